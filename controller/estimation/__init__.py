@@ -1,0 +1,1 @@
+"""State estimation from encoders, IMU and foot-corner load cells."""

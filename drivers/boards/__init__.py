@@ -1,0 +1,1 @@
+"""Sensor boards on serial ports: foot load cells and IMU."""

@@ -1,0 +1,310 @@
+"""Robot descriptions: one YAML and one MJCF a robot, parsed once into immutable data.
+
+A description says what the robot is (joints, servos, buses, feet, sensors), how its simulated
+twin behaves (`plant`, `noise`), and how it walks (`walking`, validated by the controller that
+reads it). Units are SI; keys carry a unit suffix where SI would be unhandy (`_ms`, `_us`).
+"""
+
+from functools import cached_property
+from importlib import resources
+from pathlib import Path
+from typing import Any, Literal, Self
+
+import yaml
+from pydantic import Field, PositiveFloat, PositiveInt, model_validator
+
+from hil.errors import InputError, UnknownNameError
+from hil.interface import CORNERS, SIDES
+from hil.validation import Config, read_yaml, validate
+
+Vector3 = tuple[float, float, float]
+
+
+class Joint(Config):
+    """One actuated joint, named as in the MJCF."""
+
+    name: str
+    range: tuple[float, float]
+    """[rad]"""
+    velocity_limit: PositiveFloat
+    """[rad/s]"""
+    torque_limit: PositiveFloat
+    """[N·m]"""
+    servo: str | None = None
+    """Dynamixel model; none for a joint that takes torques."""
+    bus: str | None = None
+    id: int | None = Field(default=None, ge=0, le=252)
+    direction: Literal[-1, 1] = 1
+    """Sign of the servo's position against the joint's."""
+    stiffness: float = Field(default=0.0, ge=0)
+    """Default kp [N·m/rad]."""
+    damping: float = Field(default=0.0, ge=0)
+    """Default kd [N·m·s/rad]."""
+
+
+class Bus(Config):
+    """One servo bus on its own USB adapter."""
+
+    port: str | None = None
+    """Port of the real robot, named by id; none until it is known."""
+    baud: PositiveInt
+    latency_timer_ms: PositiveInt = 1
+
+
+class Board(Config):
+    """One sensor board on its own serial port."""
+
+    kind: Literal["foot", "imu"]
+    port: str | None = None
+    baud: PositiveInt = 921600
+    rate_hz: PositiveInt
+
+
+class Foot(Config):
+    """One foot: a box sole with four load-cell corners."""
+
+    body: str
+    """MJCF body of the foot."""
+    sole: str
+    """MJCF geom of the box sole."""
+    toe: str | None = None
+    """MJCF geom of a separate toe body, where there is one."""
+    ankle: str
+    """The joint whose anchor is the ankle point."""
+    board: str | None = None
+
+
+class Imu(Config):
+    """The inertial measurement unit, rigid in the root body."""
+
+    board: str
+    site: str
+    """MJCF site whose frame is the sensor's."""
+
+
+class Supply(Config):
+    """The servo supply."""
+
+    voltage: PositiveFloat
+    """Open-circuit voltage [V]."""
+    resistance: float = Field(ge=0)
+    """Pack and wiring, shared by all servos [Ω]."""
+
+
+class Timing(Config):
+    """Fixed delays of the robot's computer and adapters; never measured in a dry run."""
+
+    compute_us: PositiveInt
+    """From the last byte read to the first byte written."""
+    usb_transfer_us: PositiveInt
+    """One USB transfer, each way."""
+
+
+class Plant(Config):
+    """How the simulated twin differs from the nominal model."""
+
+    floor_friction: PositiveFloat
+    mass_scale: PositiveFloat = 1.0
+    """Factor on the mass and inertia of the root body."""
+    armature: float | None = Field(default=None, ge=0)
+    """Reflected rotor inertia of every servo [kg·m²]; none keeps the MJCF's."""
+    joint_friction: float | None = Field(default=None, ge=0)
+    """Dry friction of every servo [N·m]; none keeps the MJCF's."""
+
+
+class Noise(Config):
+    """Standard deviations of what a seed draws. Zero is an ideal sensor."""
+
+    attitude: float = Field(ge=0)
+    """White noise of the IMU orientation [rad]."""
+    attitude_bias: float = Field(ge=0)
+    """Constant roll and pitch error of a run [rad]."""
+    gyro: float = Field(ge=0)
+    """White noise [rad/s]."""
+    gyro_bias: float = Field(ge=0)
+    """Constant error of a run [rad/s]."""
+    accelerometer: float = Field(ge=0)
+    """White noise [m/s²]."""
+    corner_force: float = Field(ge=0)
+    """White noise of one load cell [N]."""
+    corner_zero: float = Field(ge=0)
+    """Constant zero error of one load cell, after calibration [N]."""
+    imu_delay_us: int = Field(ge=0)
+    """Age of an IMU sample when its frame is sent."""
+    board_jitter_us: int = Field(ge=0)
+    """Random extra delay of a board frame, uniform from 0 to this."""
+    usb_jitter_us: int = Field(ge=0)
+    """Random extra delay of a USB transfer, uniform from 0 to this."""
+
+
+class Start(Config):
+    """Pose in which the robot is placed and to which start-up ramps."""
+
+    joints: dict[str, float] = {}
+    """[rad], by joint name; joints that are not named start at 0."""
+    moving: bool = False
+    """Start at the commanded speed, on the left foot, without standing first (torque robots)."""
+    lateral_velocity: float = 0.0
+    """Initial coronal velocity when moving [m/s]."""
+
+
+class Defaults(Config):
+    """What `stride walk ROBOT` does where the command line is silent."""
+
+    backend: Literal["mujoco", "bus"]
+    estimator: Literal["sensors", "truth"]
+    pd: Literal["explicit", "implicit"] | None = None
+    rate_hz: PositiveInt
+    speed: float
+    ankle_limit: bool
+    stabilizer: bool
+
+
+class RobotDescription(Config):
+    """Everything that is known of a robot before it is switched on."""
+
+    name: str
+    model: str
+    """MJCF file, relative to the description."""
+    actuation: Literal["servo", "torque"]
+    root: str
+    """MJCF body that carries the free joint."""
+    joints: tuple[Joint, ...] = Field(min_length=1)
+    feet: dict[Literal["left", "right"], Foot]
+    buses: dict[str, Bus] = {}
+    boards: dict[str, Board] = {}
+    imu: Imu | None = None
+    supply: Supply | None = None
+    timing: Timing
+    plant: Plant
+    noise: Noise
+    start: Start
+    defaults: Defaults
+    walking: dict[str, Any]
+    file: str
+    """Where the description was read from."""
+
+    @cached_property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names in the order of every array of shape (n,)."""
+        return tuple(joint.name for joint in self.joints)
+
+    @cached_property
+    def model_path(self) -> Path:
+        """Absolute path of the MJCF."""
+        return Path(self.file).parent / self.model
+
+    @cached_property
+    def start_position(self) -> tuple[float, ...]:
+        """Start pose in joint order [rad]."""
+        return tuple(self.start.joints.get(name, 0.0) for name in self.joint_names)
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        names = [joint.name for joint in self.joints]
+        doubles = sorted({name for name in names if names.count(name) > 1})
+        if doubles:
+            raise ValueError(f"joint names appear twice: {', '.join(doubles)}")
+        if set(self.feet) != set(SIDES):
+            raise ValueError(f"feet must be {' and '.join(SIDES)}")
+        for joint in self.joints:
+            self._check_joint(joint)
+        strangers = sorted(set(self.start.joints) - set(names))
+        if strangers:
+            raise ValueError(f"start.joints names no joint of this robot: {', '.join(strangers)}; "
+                             f"valid: {', '.join(names)}")
+        for side, foot in self.feet.items():
+            if foot.board is not None and foot.board not in self.boards:
+                raise ValueError(f"feet.{side}.board {foot.board!r} is not one of boards: "
+                                 f"{', '.join(self.boards) or '(none)'}")
+        if self.imu is not None and self.imu.board not in self.boards:
+            raise ValueError(f"imu.board {self.imu.board!r} is not one of boards: "
+                             f"{', '.join(self.boards) or '(none)'}")
+        if self.actuation == "servo" and self.supply is None:
+            raise ValueError("a servo robot needs a supply")
+        return self
+
+    def _check_joint(self, joint: Joint) -> None:
+        if not joint.range[0] < joint.range[1]:
+            raise ValueError(f"joint {joint.name}: range must rise, got {joint.range}")
+        if self.actuation == "torque":
+            return
+        missing = [key for key in ("servo", "bus", "id") if getattr(joint, key) is None]
+        if missing:
+            raise ValueError(f"joint {joint.name}: a servo joint needs {', '.join(missing)}")
+        if joint.bus not in self.buses:
+            raise ValueError(f"joint {joint.name}: bus {joint.bus!r} is not one of buses: "
+                             f"{', '.join(self.buses) or '(none)'}")
+        twins = [other.name for other in self.joints
+                 if other.bus == joint.bus and other.id == joint.id]
+        if len(twins) > 1:
+            raise ValueError(f"joints {' and '.join(twins)} share id {joint.id} on {joint.bus}")
+
+
+def shipped_robots() -> tuple[str, ...]:
+    """Names of the robots that ship with the package."""
+    folder = resources.files("hil.robots")
+    return tuple(sorted(entry.name for entry in folder.iterdir()
+                        if entry.is_dir() and (entry / f"{entry.name}.yaml").is_file()))
+
+
+def find_robot_file(robot: str) -> Path:
+    """The YAML file of a robot given by name or by path. Raises InputError."""
+    if robot.endswith((".yaml", ".yml")):
+        path = Path(robot)
+        if not path.is_file():
+            raise InputError(f"{robot}: no such robot file")
+        return path
+    names = shipped_robots()
+    if robot not in names:
+        raise UnknownNameError("robot", robot, (*names, "or a .yaml file"))
+    return Path(str(resources.files("hil.robots"))) / robot / f"{robot}.yaml"
+
+
+def load_robot(robot: str, overrides: tuple[str, ...] = ()) -> RobotDescription:
+    """Read a robot by name or file, with `KEY=VALUE` overrides of what `overridable` lists.
+
+    Raises DescriptionError, UnknownNameError or InputError.
+    """
+    path = find_robot_file(robot)
+    data = read_yaml(path)
+    for text in overrides:
+        _override(data, text)
+    data["file"] = str(path)
+    return validate(RobotDescription, data, str(path))
+
+
+OVERRIDE_SECTIONS = ("supply", "timing", "plant", "noise", "walking")
+
+
+def overridable(data: dict[str, Any]) -> dict[str, tuple[str, str]]:
+    """Keys that `--set` knows: `section.key`, and `key` alone where it is unique."""
+    models = {"supply": Supply, "timing": Timing, "plant": Plant, "noise": Noise}
+    pairs = []
+    for section in OVERRIDE_SECTIONS:
+        if section in models:
+            pairs += [(section, key) for key in models[section].model_fields]
+        else:
+            pairs += [(section, str(key)) for key in data.get(section, {})]
+    keys = [key for _, key in pairs]
+    known = {f"{section}.{key}": (section, key) for section, key in pairs}
+    known.update({key: (section, key) for section, key in pairs if keys.count(key) == 1})
+    return known
+
+
+def _override(data: dict[str, Any], text: str) -> None:
+    key, separator, value = text.partition("=")
+    if not separator or not value:
+        raise InputError(f"--set takes KEY=VALUE, got {text!r}")
+    known = overridable(data)
+    if key not in known:
+        raise UnknownNameError("--set key", key, sorted(k for k in known if "." in k))
+    section, name = known[key]
+    try:
+        parsed = yaml.safe_load(value)
+    except yaml.YAMLError as error:
+        raise InputError(f"--set {key}: {value!r} is not a value") from error
+    data.setdefault(section, {})[name] = parsed
+
+
+__all__ = ["CORNERS", "SIDES", "RobotDescription", "find_robot_file", "load_robot"]

@@ -1,0 +1,63 @@
+"""What a servo is told and what its motor is: the seam between gain mapping and servo physics.
+
+The driver's gain mapping makes `ServoGoals` out of a `JointCommand`; the bus writes them into
+registers, and the MuJoCo backend hands them to the same servo physics without the bytes.
+"""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from hil.interface import AppliedCommand, Floats, Ints, JointCommand, SensorFrame
+
+COUNTS_PER_TURN = 4096
+"""X-series position resolution; 2048 is the joint's zero."""
+COUNTS_PER_RADIAN = COUNTS_PER_TURN / (2 * np.pi)
+CENTRE_COUNTS = 2048
+PWM_FULL = 885
+"""Goal PWM of 100 % duty."""
+
+
+@dataclass(slots=True)
+class ServoGoals:
+    """Register values of one tick, in the servo's own direction, arrays of shape (n,)."""
+
+    position: Ints
+    """Goal Position [counts]."""
+    p_gain: Ints
+    """Position P Gain, register value."""
+    d_gain: Ints
+    """Position D Gain, register value."""
+    pwm_limit: Ints
+    """Goal PWM, 0 to 885."""
+
+
+@dataclass(frozen=True, slots=True)
+class MotorParameters:
+    """Electrical constants of every joint's servo, at the output shaft, arrays of shape (n,)."""
+
+    torque_constant: Floats
+    """k_t = back-EMF constant [N·m/A = V·s/rad]."""
+    resistance: Floats
+    """[Ω]"""
+    gain_divisor: Floats
+    """Position P Gain register units per internal unit (128 by the e-manual)."""
+    direction: Ints
+    """+1 or -1: sign of the servo against the joint."""
+
+    def stall_torque(self, voltage: float) -> Floats:
+        """Torque at standstill and full duty [N·m], shape (n,)."""
+        return self.torque_constant * voltage / self.resistance
+
+    def back_emf_damping(self) -> Floats:
+        """Damping of the driven motor, k_t²/R [N·m·s/rad], shape (n,)."""
+        return self.torque_constant**2 / self.resistance
+
+
+class ServoMapping(Protocol):
+    """Joint commands to servo registers, the one place where this happens."""
+
+    def map(self, command: JointCommand, frame: SensorFrame) -> tuple[ServoGoals, AppliedCommand]:
+        """Goals to write and what they amount to; both objects are reused by the next call."""
+        ...
