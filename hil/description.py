@@ -110,6 +110,8 @@ class Plant(Config):
     """Reflected rotor inertia of every servo [kg·m²]; none keeps the MJCF's."""
     joint_friction: float | None = Field(default=None, ge=0)
     """Dry friction of every servo [N·m]; none keeps the MJCF's."""
+    substeps: PositiveInt | None = None
+    """Physics steps a tick; none takes the fewest that reach the clock's substep frequency."""
 
 
 class Noise(Config):

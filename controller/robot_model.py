@@ -1,0 +1,175 @@
+"""The controller's own model of the robot: kinematics, masses and gravity of an estimated state.
+
+It holds an MjModel and MjData of its own, never those of a simulated plant, and only ever sees
+what an estimator says. Every quantity belongs to the state of the last `set_state`.
+"""
+
+from typing import Protocol
+
+import mujoco
+import numpy as np
+
+from hil.description import RobotDescription
+from hil.errors import DescriptionError
+from hil.interface import SIDES, Floats, Ints
+
+CORNER_SIGNS = np.array([[1, 1, -1], [1, -1, -1], [-1, 1, -1], [-1, -1, -1]], dtype=np.float64)
+"""Lower corners of a sole box in half sizes: front_left, front_right, rear_left, rear_right."""
+
+
+class BodyState(Protocol):
+    """The part of an estimate, or of ground truth, that places the model."""
+
+    base_position: Floats
+    base_orientation: Floats
+    base_linear_velocity: Floats
+    base_angular_velocity: Floats
+    joint_position: Floats
+    joint_velocity: Floats
+
+
+class RobotModel:
+    """Forward kinematics and mass properties of the described robot.
+
+    Arrays returned by properties are views or are reused: copy what must survive `set_state`.
+    Feet are ordered left, right. World axes, metres, radians, seconds.
+    """
+
+    def __init__(self, description: RobotDescription) -> None:
+        self.model = mujoco.MjModel.from_xml_path(str(description.model_path))
+        self.data = mujoco.MjData(self.model)
+        self._file = description.file
+        self.root_body = self._id(mujoco.mjtObj.mjOBJ_BODY, description.root, "root")
+        root_joint = self.model.body_jntadr[self.root_body]
+        if root_joint < 0 or self.model.jnt_type[root_joint] != mujoco.mjtJoint.mjJNT_FREE:
+            raise DescriptionError(self._file, "root", f"{description.root!r} has no free joint")
+        self._base_qpos = int(self.model.jnt_qposadr[root_joint])
+        self.base_dof = int(self.model.jnt_dofadr[root_joint])
+        self.joint_ids = self._joint_ids(description.joint_names, "joints")
+        """MuJoCo joint of every described joint, shape (n,)."""
+        self.qpos_addresses: Ints = self.model.jnt_qposadr[self.joint_ids].astype(np.int64)
+        """Where each joint is in qpos, shape (n,)."""
+        self.dof_addresses: Ints = self.model.jnt_dofadr[self.joint_ids].astype(np.int64)
+        """Where each joint is in qvel, shape (n,)."""
+        feet = [description.feet[side] for side in SIDES]  # type: ignore[index]
+        self.foot_bodies = self._ids(mujoco.mjtObj.mjOBJ_BODY, [f.body for f in feet], "body")
+        """Foot bodies, shape (2,)."""
+        self.sole_geoms = self._ids(mujoco.mjtObj.mjOBJ_GEOM, [f.sole for f in feet], "sole")
+        """Box soles, shape (2,)."""
+        self._corners: Floats = CORNER_SIGNS * self.model.geom_size[self.sole_geoms][:, None, :]
+        self._ankles = self._joint_ids([f.ankle for f in feet], "feet.*.ankle")
+        self._knees = self._joint_ids([f"{side}_knee" for side in SIDES], "joints")
+        self._hips = self._joint_ids([f"{side}_hip_pitch" for side in SIDES], "joints")
+        self.gravity = float(-self.model.opt.gravity[2])
+        """[m/s²]"""
+        self.mass = float(self.model.body_subtreemass[self.root_body])
+        """[kg]"""
+        self.weight = self.mass * self.gravity
+        """[N]"""
+        self._place_at_zero()
+        hip, knee, ankle = (points[0].copy() for points in self.leg_points())
+        self.thigh_length = float(np.linalg.norm(hip - knee))
+        """Hip centre to knee axis [m]."""
+        self.shank_length = float(np.linalg.norm(knee - ankle))
+        """Knee axis to ankle point [m]."""
+        self.leg_length = self.thigh_length + self.shank_length
+        """Hip centre to ankle point of a straight leg [m]."""
+
+    def set_state(self, state: BodyState) -> None:
+        """Place the model at a state and compute its kinematics."""
+        base, data = self._base_qpos, self.data
+        data.qpos[base : base + 3] = state.base_position
+        data.qpos[base + 3 : base + 7] = state.base_orientation
+        data.qpos[self.qpos_addresses] = state.joint_position
+        base = self.base_dof
+        data.qvel[base : base + 3] = state.base_linear_velocity
+        data.qvel[base + 3 : base + 6] = state.base_angular_velocity
+        data.qvel[self.dof_addresses] = state.joint_velocity
+        self._kinematics()
+
+    def _kinematics(self) -> None:
+        mujoco.mj_kinematics(self.model, self.data)
+        mujoco.mj_comPos(self.model, self.data)
+        mujoco.mj_comVel(self.model, self.data)
+        mujoco.mj_subtreeVel(self.model, self.data)
+
+    def _place_at_zero(self) -> None:
+        self.data.qpos[:] = self.model.qpos0
+        self._kinematics()
+
+    @property
+    def com(self) -> Floats:
+        """Centre of mass of the whole body [m], shape (3,)."""
+        return self.data.subtree_com[self.root_body]
+
+    @property
+    def com_velocity(self) -> Floats:
+        """Velocity of the centre of mass [m/s], shape (3,)."""
+        return self.data.subtree_linvel[self.root_body]
+
+    @property
+    def root_rotation(self) -> Floats:
+        """Rotation matrix of the root body, base to world, shape (3, 3)."""
+        return self.data.xmat[self.root_body].reshape(3, 3)
+
+    @property
+    def angular_velocities(self) -> Floats:
+        """World angular velocity of every body [rad/s], shape (bodies, 3)."""
+        return self.data.cvel[:, :3]
+
+    @property
+    def ankle_positions(self) -> Floats:
+        """Ankle points [m], shape (2, 3)."""
+        return self.data.xanchor[self._ankles]
+
+    @property
+    def hip_positions(self) -> Floats:
+        """Hip centres [m], shape (2, 3)."""
+        return self.data.xanchor[self._hips]
+
+    @property
+    def foot_rotations(self) -> Floats:
+        """Rotation matrices of the foot bodies, foot to world, shape (2, 3, 3)."""
+        return self.data.xmat[self.foot_bodies].reshape(2, 3, 3)
+
+    @property
+    def corner_positions(self) -> Floats:
+        """Lower corners of the soles [m], shape (2, 4, 3)."""
+        rotations = self.data.geom_xmat[self.sole_geoms].reshape(2, 3, 3)
+        centres = self.data.geom_xpos[self.sole_geoms][:, None, :]
+        return centres + self._corners @ rotations.transpose(0, 2, 1)
+
+    @property
+    def joint_axes(self) -> Floats:
+        """World axes of the joints, in description order, shape (n, 3)."""
+        return self.data.xaxis[self.joint_ids]
+
+    def leg_points(self) -> tuple[Floats, Floats, Floats]:
+        """Hips, knees and ankles of both legs [m], each of shape (2, 3)."""
+        anchors = self.data.xanchor
+        return anchors[self._hips], anchors[self._knees], anchors[self._ankles]
+
+    def gravity_torques(self) -> Floats:
+        """Torque of each joint that holds the weight beyond it [N·m], shape (n,).
+
+        τ_j = −axis_j · ((c_j − p_j) × m_j·g), with c_j and m_j the centre and mass of the
+        subtree beyond the joint and p_j its anchor; the base is taken as held.
+        """
+        bodies = self.model.jnt_bodyid[self.joint_ids]
+        lever = self.data.subtree_com[bodies] - self.data.xanchor[self.joint_ids]
+        weight = self.model.body_subtreemass[bodies] * self.gravity
+        axes = self.data.xaxis[self.joint_ids]
+        torques: Floats = weight * (axes[:, 0] * lever[:, 1] - axes[:, 1] * lever[:, 0])
+        return torques
+
+    def _id(self, kind: int, name: str, key: str) -> int:
+        found = int(mujoco.mj_name2id(self.model, kind, name))
+        if found < 0:
+            raise DescriptionError(self._file, key, f"{name!r} is not in the model")
+        return found
+
+    def _ids(self, kind: int, names: list[str], key: str) -> Ints:
+        return np.array([self._id(kind, name, f"feet.*.{key}") for name in names])
+
+    def _joint_ids(self, names: tuple[str, ...] | list[str], key: str) -> Ints:
+        return np.array([self._id(mujoco.mjtObj.mjOBJ_JOINT, name, key) for name in names])
