@@ -74,6 +74,10 @@ class RobotModel:
         """Knee axis to ankle point [m]."""
         self.leg_length = self.thigh_length + self.shank_length
         """Hip centre to ankle point of a straight leg [m]."""
+        bend = np.arctan2(hip[0] - knee[0], hip[2] - knee[2])
+        bend -= np.arctan2(knee[0] - ankle[0], knee[2] - ankle[2])
+        self.knee_offset = float(bend)
+        """Knee angle at which thigh and shank lie on one line [rad]."""
 
     def set_state(self, state: BodyState) -> None:
         """Place the model at a state and compute its kinematics."""
@@ -100,49 +104,58 @@ class RobotModel:
     @property
     def com(self) -> Floats:
         """Centre of mass of the whole body [m], shape (3,)."""
-        return self.data.subtree_com[self.root_body]
+        value: Floats = self.data.subtree_com[self.root_body]
+        return value
 
     @property
     def com_velocity(self) -> Floats:
         """Velocity of the centre of mass [m/s], shape (3,)."""
-        return self.data.subtree_linvel[self.root_body]
+        value: Floats = self.data.subtree_linvel[self.root_body]
+        return value
 
     @property
     def root_rotation(self) -> Floats:
         """Rotation matrix of the root body, base to world, shape (3, 3)."""
-        return self.data.xmat[self.root_body].reshape(3, 3)
+        value: Floats = self.data.xmat[self.root_body].reshape(3, 3)
+        return value
 
     @property
     def angular_velocities(self) -> Floats:
         """World angular velocity of every body [rad/s], shape (bodies, 3)."""
-        return self.data.cvel[:, :3]
+        value: Floats = self.data.cvel[:, :3]
+        return value
 
     @property
     def ankle_positions(self) -> Floats:
         """Ankle points [m], shape (2, 3)."""
-        return self.data.xanchor[self._ankles]
+        value: Floats = self.data.xanchor[self._ankles]
+        return value
 
     @property
     def hip_positions(self) -> Floats:
         """Hip centres [m], shape (2, 3)."""
-        return self.data.xanchor[self._hips]
+        value: Floats = self.data.xanchor[self._hips]
+        return value
 
     @property
     def foot_rotations(self) -> Floats:
         """Rotation matrices of the foot bodies, foot to world, shape (2, 3, 3)."""
-        return self.data.xmat[self.foot_bodies].reshape(2, 3, 3)
+        value: Floats = self.data.xmat[self.foot_bodies].reshape(2, 3, 3)
+        return value
 
     @property
     def corner_positions(self) -> Floats:
         """Lower corners of the soles [m], shape (2, 4, 3)."""
         rotations = self.data.geom_xmat[self.sole_geoms].reshape(2, 3, 3)
         centres = self.data.geom_xpos[self.sole_geoms][:, None, :]
-        return centres + self._corners @ rotations.transpose(0, 2, 1)
+        value: Floats = centres + self._corners @ rotations.transpose(0, 2, 1)
+        return value
 
     @property
     def joint_axes(self) -> Floats:
         """World axes of the joints, in description order, shape (n, 3)."""
-        return self.data.xaxis[self.joint_ids]
+        value: Floats = self.data.xaxis[self.joint_ids]
+        return value
 
     def leg_points(self) -> tuple[Floats, Floats, Floats]:
         """Hips, knees and ankles of both legs [m], each of shape (2, 3)."""

@@ -213,15 +213,21 @@ class RobotDescription(Config):
             self._check_joint(joint)
         strangers = sorted(set(self.start.joints) - set(names))
         if strangers:
-            raise ValueError(f"start.joints names no joint of this robot: {', '.join(strangers)}; "
-                             f"valid: {', '.join(names)}")
+            raise ValueError(
+                f"start.joints names no joint of this robot: {', '.join(strangers)}; "
+                f"valid: {', '.join(names)}"
+            )
         for side, foot in self.feet.items():
             if foot.board is not None and foot.board not in self.boards:
-                raise ValueError(f"feet.{side}.board {foot.board!r} is not one of boards: "
-                                 f"{', '.join(self.boards) or '(none)'}")
+                raise ValueError(
+                    f"feet.{side}.board {foot.board!r} is not one of boards: "
+                    f"{', '.join(self.boards) or '(none)'}"
+                )
         if self.imu is not None and self.imu.board not in self.boards:
-            raise ValueError(f"imu.board {self.imu.board!r} is not one of boards: "
-                             f"{', '.join(self.boards) or '(none)'}")
+            raise ValueError(
+                f"imu.board {self.imu.board!r} is not one of boards: "
+                f"{', '.join(self.boards) or '(none)'}"
+            )
         if self.actuation == "servo" and self.supply is None:
             raise ValueError("a servo robot needs a supply")
         return self
@@ -235,10 +241,13 @@ class RobotDescription(Config):
         if missing:
             raise ValueError(f"joint {joint.name}: a servo joint needs {', '.join(missing)}")
         if joint.bus not in self.buses:
-            raise ValueError(f"joint {joint.name}: bus {joint.bus!r} is not one of buses: "
-                             f"{', '.join(self.buses) or '(none)'}")
-        twins = [other.name for other in self.joints
-                 if other.bus == joint.bus and other.id == joint.id]
+            raise ValueError(
+                f"joint {joint.name}: bus {joint.bus!r} is not one of buses: "
+                f"{', '.join(self.buses) or '(none)'}"
+            )
+        twins = [
+            other.name for other in self.joints if other.bus == joint.bus and other.id == joint.id
+        ]
         if len(twins) > 1:
             raise ValueError(f"joints {' and '.join(twins)} share id {joint.id} on {joint.bus}")
 
@@ -246,8 +255,13 @@ class RobotDescription(Config):
 def shipped_robots() -> tuple[str, ...]:
     """Names of the robots that ship with the package."""
     folder = resources.files("hil.robots")
-    return tuple(sorted(entry.name for entry in folder.iterdir()
-                        if entry.is_dir() and (entry / f"{entry.name}.yaml").is_file()))
+    return tuple(
+        sorted(
+            entry.name
+            for entry in folder.iterdir()
+            if entry.is_dir() and (entry / f"{entry.name}.yaml").is_file()
+        )
+    )
 
 
 def find_robot_file(robot: str) -> Path:

@@ -33,9 +33,7 @@ def read_yaml(path: Path) -> dict[str, Any]:
     return data
 
 
-def validate(
-    model: type[ConfigT], data: Mapping[str, Any], file: str, prefix: str = ""
-) -> ConfigT:
+def validate(model: type[ConfigT], data: Mapping[str, Any], file: str, prefix: str = "") -> ConfigT:
     """Parse data into a Config; raises DescriptionError for the first mistake found."""
     try:
         return model.model_validate(data)

@@ -22,6 +22,8 @@ class HeadingConfig(Config):
     """The ramp of a step starts at this phase."""
     steps: PositiveInt = 2
     """Steps over which a turn is distributed."""
+    inner_foot_above: PositiveFloat | None = None
+    """A larger turn [rad] waits for a step whose swing foot is on its inner side; none: never."""
 
 
 @dataclass(slots=True)
@@ -30,6 +32,8 @@ class HeadingRamp:
 
     At the start phase of a step with s steps left of the turn, ψ begins a linear ramp of
     duration T_r towards ψ + (ψ* − ψ)/s; s counts down from `steps` to 1 after a new command.
+    A command that comes later in a step waits for the next one: the swing foot could not follow.
+    A large turn is begun by the inner foot, which steps out and not across the stance leg.
     """
 
     config: HeadingConfig
@@ -47,7 +51,9 @@ class HeadingRamp:
             self._wanted = wanted
             self._steps_left = self.config.steps
         if gait.phase >= self.config.start_phase and gait.steps != self._ramped_step:
-            self._begin_ramp(gait.steps)
+            self._ramped_step = gait.steps
+            if not self._waits(gait):
+                self._begin_ramp()
         if self._ramp_left > 0.0:
             self.heading += self._rate * min(dt, self._ramp_left)
             self._ramp_left -= dt
@@ -58,9 +64,16 @@ class HeadingRamp:
         """Whether the tracked heading is still on its way."""
         return abs(self._wanted - self.heading) > 1e-9
 
-    def _begin_ramp(self, step: int) -> None:
+    def _waits(self, gait: Gait) -> bool:
+        """Whether a turn that has not begun needs the other foot first."""
+        turn = self._wanted - self.heading
+        threshold = self.config.inner_foot_above
+        if threshold is None or self._steps_left < self.config.steps or abs(turn) <= threshold:
+            return False
+        return turn * gait.stance_sign > 0.0
+
+    def _begin_ramp(self) -> None:
         share = (self._wanted - self.heading) / self._steps_left
         self._steps_left = max(1, self._steps_left - 1)
-        self._ramped_step = step
         self._rate = share / self.config.ramp_time
         self._ramp_left = self.config.ramp_time

@@ -1,0 +1,33 @@
+"""Foot contact from noisy corner forces: a filter, then two thresholds."""
+
+import math
+
+import numpy as np
+
+from controller.estimation.config import ContactConfig
+from hil.interface import Bools, Floats
+
+
+class ContactDetector:
+    """Filtered corner forces and a contact flag per foot.
+
+    f ← f + (1 − e^(−dt/τ))·(measured − f); a foot gains contact when the sum of its corners
+    exceeds `on`·W and loses it below `off`·W, W the body weight. Cells that read tension are
+    taken as they are in the sum, so that zero-mean noise stays zero-mean.
+    """
+
+    def __init__(self, config: ContactConfig, weight: float, dt: float) -> None:
+        time = config.filter_time
+        self._gain = 1.0 - math.exp(-dt / time) if time > 0.0 else 1.0
+        self._on = config.on * weight
+        self._off = config.off * weight
+        self.force: Floats = np.zeros((2, 4))
+        """Filtered corner forces [N], shape (2, 4)."""
+        self.contact: Bools = np.zeros(2, dtype=np.bool_)
+        """Whether each foot is on the ground, shape (2,)."""
+
+    def update(self, force: Floats) -> None:
+        """Take the corner forces of one tick [N], shape (2, 4)."""
+        self.force += self._gain * (force - self.force)
+        load = self.force.sum(axis=1)
+        self.contact[:] = np.where(self.contact, load > self._off, load > self._on)

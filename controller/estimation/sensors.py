@@ -1,0 +1,124 @@
+"""The state of a robot from its own sensors: encoders, IMU and foot corners."""
+
+import numpy as np
+
+from controller.estimation.attitude import AttitudeFilter
+from controller.estimation.config import EstimatorConfig
+from controller.estimation.contact import ContactDetector
+from controller.estimation.joint_state import JointStateFilter
+from controller.estimation.level_trim import LevelTrim
+from controller.estimation.odometry import CornerOdometry
+from controller.estimation.rotation import turned
+from controller.robot_model import RobotModel
+from hil.description import RobotDescription
+from hil.interface import Estimate, Floats, SensorFrame
+
+_DEFAULT = EstimatorConfig()
+
+
+class SensorEstimator:
+    """Estimator of a robot with flat soles on flat ground.
+
+    Order in a tick: contact, joints, attitude, then the model is placed with its base at the
+    origin, the odometry moves the base, and com and com velocity follow from the model.
+    """
+
+    def __init__(
+        self, description: RobotDescription, rate_hz: int, config: EstimatorConfig = _DEFAULT
+    ) -> None:
+        dt = 1.0 / rate_hz
+        n = len(description.joints)
+        self._model = RobotModel(description)
+        self._contact = ContactDetector(config.contact, self._model.weight, dt)
+        self._joints = JointStateFilter(n, config.velocity_time, config.coast_time)
+        self._attitude = AttitudeFilter(config, dt)
+        self._trim = LevelTrim(config.trim, self._model.weight, dt)
+        self._odometry = CornerOdometry(self._model.weight, dt, config.trust_time)
+        self.estimate = empty_estimate(n)
+
+    def update(self, frame: SensorFrame) -> Estimate:
+        """The estimate at the frame's time. The returned object is reused by the next call."""
+        estimate, model = self.estimate, self._model
+        self._contact.update(frame.foot_force)
+        self._joints.update(frame)
+        estimate.time_ns = frame.time_ns
+        estimate.joint_position[:] = self._joints.position
+        estimate.joint_velocity[:] = self._joints.velocity
+        estimate.base_position[:] = 0.0
+        estimate.base_linear_velocity[:] = 0.0
+        self._update_attitude(frame)
+        model.set_state(estimate)
+        contact = self._contact
+        self._odometry.update(
+            model.corner_positions, self._corner_velocities(), contact.force, contact.contact
+        )
+        self._trim.update(model.root_rotation, model.foot_rotations, contact.force)
+        estimate.base_position[:] = self._odometry.position
+        estimate.base_linear_velocity[:] = self._odometry.velocity
+        np.add(model.com, self._odometry.position, out=estimate.com)
+        np.add(model.com_velocity, self._odometry.velocity, out=estimate.com_velocity)
+        estimate.foot_force[:] = self._contact.force
+        estimate.contact[:] = self._contact.contact
+        estimate.supply_voltage = supply_voltage(frame)
+        return estimate
+
+    def _update_attitude(self, frame: SensorFrame) -> None:
+        if self._attitude.hears_imu(frame):
+            self._attitude.update_from_imu(frame)
+            self._take_attitude(turned(self._attitude.orientation, self._trim.rotation))
+            return
+        estimate, model = self.estimate, self._model
+        estimate.base_orientation[:] = (1.0, 0.0, 0.0, 0.0)
+        estimate.base_angular_velocity[:] = 0.0
+        model.set_state(estimate)
+        support = self._attitude.choose_support(self._contact.force.sum(axis=1))
+        turning = model.angular_velocities[model.foot_bodies[support]]
+        self._attitude.update_from_foot(support, model.foot_rotations[support], turning)
+        self._take_attitude(self._attitude.orientation)
+
+    def _take_attitude(self, orientation: Floats) -> None:
+        self.estimate.base_orientation[:] = orientation
+        self.estimate.base_angular_velocity[:] = self._attitude.angular_velocity
+
+    def _corner_velocities(self) -> Floats:
+        """Velocities of the sole corners against the base origin [m/s], shape (2, 4, 3)."""
+        model = self._model
+        twist = model.data.cvel[model.foot_bodies]
+        lever = model.corner_positions - model.com
+        return twist[:, None, 3:] + _cross(twist[:, None, :3], lever)
+
+
+def _cross(first: Floats, second: Floats) -> Floats:
+    """Cross product along the last axis, without the checks that make numpy's slow."""
+    return (
+        first[..., [1, 2, 0]] * second[..., [2, 0, 1]]
+        - first[..., [2, 0, 1]] * second[..., [1, 2, 0]]
+    )
+
+
+def supply_voltage(frame: SensorFrame) -> float:
+    """Mean voltage over the servos that report one [V]; NaN where none does."""
+    total = float(frame.joint_voltage.sum())
+    if total == total:
+        return total / frame.joint_voltage.size
+    known = frame.joint_voltage[np.isfinite(frame.joint_voltage)]
+    return float(known.mean()) if known.size else float("nan")
+
+
+def empty_estimate(n: int) -> Estimate:
+    """An estimate of n joints at rest at the origin, without contact."""
+    return Estimate(
+        time_ns=0,
+        base_position=np.zeros(3),
+        base_orientation=np.array([1.0, 0.0, 0.0, 0.0]),
+        base_linear_velocity=np.zeros(3),
+        base_angular_velocity=np.zeros(3),
+        joint_position=np.zeros(n),
+        joint_velocity=np.zeros(n),
+        com=np.zeros(3),
+        com_velocity=np.zeros(3),
+        foot_force=np.zeros((2, 4)),
+        toe_force=np.zeros(2),
+        contact=np.zeros(2, dtype=np.bool_),
+        supply_voltage=float("nan"),
+    )

@@ -1,0 +1,85 @@
+"""Foot placement by the inverted pendulum model (IPM): where the swing foot must land.
+
+Seed 000_bd1305a0ae731442, section 3, after Coros 2010: the foot is set where a pendulum with the
+body's speed would come to rest upright over it.
+"""
+
+import math
+
+import numpy as np
+from pydantic import Field, PositiveFloat
+
+from hil.interface import Floats
+from hil.validation import Config
+
+
+def pendulum_distance(velocity: float, height: float, gain: float, gravity: float) -> float:
+    """Step distance d = k·v·√(h/g + v²/(4g²)) [m], signed like the velocity v [m/s].
+
+    `height` h is that of the centre of mass above the stance ankle [m], gain k is 1 for the ideal
+    pendulum. A height below zero (a body that has fallen) counts as zero.
+    """
+    under_root = max(height, 0.0) / gravity + (velocity / (2.0 * gravity)) ** 2
+    return gain * velocity * math.sqrt(under_root)
+
+
+class FootPlacementConfig(Config):
+    """Constants of the placement, sagittal and coronal."""
+
+    gain: tuple[PositiveFloat, PositiveFloat]
+    """k of the two axes; 1.3 in the author's code."""
+    speed_offset: tuple[float, float]
+    """Step shortened by this times the commanded speed [m per m/s]."""
+    half_width: float
+    """Outward offset of the landing point from the pendulum's [m]."""
+    limit: PositiveFloat
+    """Largest distance from the centre of mass on either axis, as a fraction of the leg."""
+    start_phase: float = Field(ge=0, lt=1)
+    """The foot leaves its start position at this phase."""
+    end_phase: float = Field(gt=0)
+    """The foot is on its target from this phase on."""
+
+
+class FootPlacement:
+    """Horizontal target of the swing ankle relative to the whole-body centre of mass.
+
+    d_x = d(v_x) − a_x·V*_x + Δ and d_y = d(v_y) − a_y·V*_y ± w/2, both within ± limit·leg, in
+    the heading frame; the sign is that of the swing side. Between lift-off and the end phase φ_e,
+    target(φ) = (1 − t²)·d + t²·start with t = clip(1 − (φ − φ_0)/(φ_e − φ_0), 0, 1).
+    """
+
+    def __init__(self, config: FootPlacementConfig, leg_length: float, gravity: float) -> None:
+        self._config = config
+        self._gravity = gravity
+        self._limit = config.limit * leg_length
+
+    def distance(
+        self,
+        velocity: Floats,
+        height: float,
+        wanted: Floats,
+        alteration: float,
+        outward: float,
+    ) -> Floats:
+        """Landing point d relative to the centre of mass in the heading frame [m], shape (2,).
+
+        `velocity` and `wanted` are sagittal and coronal speeds [m/s], shape (2,); `outward` is
+        the coronal offset ± w/2 [m], positive to the left.
+        """
+        config = self._config
+        offsets = (alteration, outward)
+        landing = np.empty(2)
+        for axis in range(2):
+            point = pendulum_distance(
+                float(velocity[axis]), height, config.gain[axis], self._gravity
+            )
+            point += offsets[axis] - config.speed_offset[axis] * float(wanted[axis])
+            landing[axis] = min(max(point, -self._limit), self._limit)
+        return landing
+
+    def blend(self, phase: float, landing: Floats, start: Floats) -> Floats:
+        """Target at a phase, between the start of the swing and the landing point [m]."""
+        config = self._config
+        span = config.end_phase - config.start_phase
+        t = min(max(1.0 - (phase - config.start_phase) / span, 0.0), 1.0)
+        return (1.0 - t * t) * landing + t * t * start

@@ -1,0 +1,62 @@
+"""The learned velocity curve: the speed wanted at each phase of a step, learned from steps.
+
+Seed 000_bd1305a0ae731442, section 3 (velocity component): a body on legs cannot move at constant
+speed within a step. The curve learns the deviation that the walk has by itself, so that the virtual
+force need not fight it and only holds the mean.
+"""
+
+import numpy as np
+
+from controller.walking.key_poses import CurveTable
+from controller.walking.torque_config import LearnedVelocityConfig
+from hil.interface import Floats
+
+
+class LearnedVelocity:
+    """Deviation f(φ) from the step's mean speed, per stance side, sagittal and coronal.
+
+    At a step's end, with the observed deviation f_obs at k uniform knots and
+    Δ_avg = mean|f_obs − f|: if Δ_avg is below the threshold,
+    f ← f + r·clip(f_obs − f, ±Δ_avg). Knots are joined by Catmull-Rom splines; those that the
+    step did not reach take its last deviation.
+    """
+
+    def __init__(self, config: LearnedVelocityConfig, capacity: int) -> None:
+        """`capacity` is the largest number of ticks in a step."""
+        self._config = config
+        self._at = np.linspace(0.0, 1.0, config.knots)
+        self.values = np.zeros((2, 2, config.knots))
+        """Deviations [m/s] by stance side, axis (sagittal, coronal) and knot."""
+        self._tables = [self._table(side) for side in range(2)]
+        self._phase = np.zeros(capacity)
+        self._speed = np.zeros((capacity, 2))
+        self._count = 0
+
+    def deviation(self, stance: int, phase: float) -> Floats:
+        """Learned deviation, sagittal and coronal [m/s], shape (2,)."""
+        return self._tables[stance].at(phase)
+
+    def observe(self, phase: float, velocity: Floats) -> None:
+        """Record the speed of one tick [m/s], shape (2,)."""
+        if self._count < len(self._phase):
+            self._phase[self._count] = phase
+            self._speed[self._count] = velocity
+            self._count += 1
+
+    def end_step(self, stance: int, learn: bool) -> None:
+        """Learn from the step that `stance` carried, or only forget its record."""
+        count, self._count = self._count, 0
+        if not learn or count == 0:
+            return
+        speed = self._speed[:count] - self._speed[:count].mean(axis=0)
+        for axis in range(2):
+            observed = np.interp(self._at, self._phase[:count], speed[:, axis])
+            error = observed - self.values[stance, axis]
+            mean = float(np.abs(error).mean())
+            if mean < self._config.threshold:
+                self.values[stance, axis] += self._config.rate * np.clip(error, -mean, mean)
+        self._tables[stance] = self._table(stance)
+
+    def _table(self, stance: int) -> CurveTable:
+        curves = [list(zip(self._at, values, strict=True)) for values in self.values[stance]]
+        return CurveTable(curves, 1.0)

@@ -1,0 +1,75 @@
+"""Target orientations of all joints: key poses, the swing leg's inverse kinematics, the start pose.
+
+Joints without a curve of their own hold the pose of the robot description's `start`, or, when
+they are tracked in the heading frame, stay upright.
+"""
+
+import mujoco
+import numpy as np
+
+from controller.robot_model import RobotModel
+from controller.walking.gait import Gait
+from controller.walking.joint_groups import JointGroups
+from controller.walking.key_poses import CurveTable
+from controller.walking.pose_tracking import PoseTracking
+from controller.walking.rotations import about_x, about_y, about_z
+from controller.walking.swing_leg import SwingLeg
+from controller.walking.torque_config import TorqueWalkingConfig
+from hil.description import RobotDescription
+from hil.interface import Floats
+
+
+class PoseTargets:
+    """Fills the targets of a `PoseTracking`, phase by phase.
+
+    Curves describe a step on the left foot; yaw and roll change sign on the right one.
+    """
+
+    def __init__(
+        self,
+        description: RobotDescription,
+        config: TorqueWalkingConfig,
+        robot: RobotModel,
+        groups: JointGroups,
+        tracking: PoseTracking,
+    ) -> None:
+        self._tracking = tracking
+        self._curves = CurveTable(config.key_poses.curves(), config.gait.max_phase)
+        self._back = groups.index("back")
+        self._hips, self._knees = groups.legs("hip"), groups.legs("knee")
+        self._ankles = groups.legs("ankle")
+        held = _start_pose(description, robot, groups)
+        relative = tracking.relative[: len(groups)]
+        tracking.target[: len(groups)][relative] = held[relative]
+
+    def update(self, gait: Gait) -> float:
+        """Set the targets of a phase; returns the drop of the swing ankle below its hip [m]."""
+        tracking, sign = self._tracking, gait.stance_sign
+        root, yaw, pitch, roll, knee, stance_foot, swing_foot, drop = self._curves.at(gait.phase)
+        tracking.target[tracking.root] = about_y(root)
+        tracking.target[self._back] = about_z(sign * yaw) @ about_y(pitch) @ about_x(sign * roll)
+        tracking.target[self._knees[gait.stance]] = about_y(knee)
+        tracking.target[self._ankles[gait.stance]] = about_y(stance_foot)
+        tracking.target[self._ankles[gait.swing]] = about_y(swing_foot)
+        tracking.target_rate[self._hips[gait.stance]] = 0.0
+        tracking.target_rate[self._knees[gait.stance]] = 0.0
+        return float(drop)
+
+    def set_swing_leg(self, swing: int, leg: SwingLeg) -> None:
+        """Take over the inverse kinematics of the swing hip and knee."""
+        tracking = self._tracking
+        tracking.target[self._hips[swing]] = leg.hip
+        tracking.target_rate[self._hips[swing]] = leg.hip_rate
+        tracking.target[self._knees[swing]] = about_y(leg.knee)
+        tracking.target_rate[self._knees[swing], 1] = leg.knee_rate
+
+
+def _start_pose(description: RobotDescription, robot: RobotModel, groups: JointGroups) -> Floats:
+    """Orientation of every group's child in its parent, in the start pose."""
+    data = mujoco.MjData(robot.model)
+    data.qpos[robot.qpos_addresses] = description.start_position
+    mujoco.mj_kinematics(robot.model, data)
+    child = data.xmat[groups.child].reshape(-1, 3, 3)
+    parent = data.xmat[groups.parent].reshape(-1, 3, 3)
+    pose: Floats = np.swapaxes(parent, 1, 2) @ child
+    return pose

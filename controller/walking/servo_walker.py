@@ -1,0 +1,152 @@
+"""Walking of a servo robot: the shared gait, with inverse kinematics and feed-forward at its end.
+
+Structure of seed 000_bd1305a0ae731442 (state machine, placement of the swing foot by an inverted
+pendulum, velocity control by a virtual force, gravity compensation), for joints whose servos
+close a stiff position loop: horizontal freedom of the stance leg comes from targets that follow
+the measured place of the torso, and the virtual force acts as a centre of pressure.
+"""
+
+import math
+
+import mujoco
+import numpy as np
+
+from controller.robot_model import RobotModel
+from controller.walking.leg_targets import INSTANTS, LegPlanner, LegTargets
+from controller.walking.servo_config import servo_walking_config
+from controller.walking.servo_step import ServoStep
+from controller.walking.support_force import SupportForce
+from controller.walking.swing_trajectory import SwingTrajectory
+from controller.walking.weight_shift import WeightShift
+from hil.description import RobotDescription
+from hil.errors import DescriptionError
+from hil.interface import SIDES, Estimate, Floats, Ints, JointCommand, Reference, WalkStatus
+
+LEG_JOINTS = ("hip_yaw", "hip_roll", "hip_pitch", "knee", "ankle_pitch", "ankle_roll")
+
+
+class ServoWalker:
+    """Controller of a robot with six position servos a leg.
+
+    Sends q*, q̇*, the description's stiffness and damping, and the feed-forward torque
+    τ_ff + I·q̈* (I the swing leg's inertia); what a servo needs to realise them is not its concern.
+    """
+
+    def __init__(
+        self, description: RobotDescription, rate_hz: int, ankle_limit: bool = True
+    ) -> None:
+        self.status = WalkStatus()
+        self.config = config = servo_walking_config(description)
+        self._dt = 1.0 / rate_hz
+        self._lead = config.latency + self._dt / 2
+        self._model = model = RobotModel(description)
+        self._legs = _leg_joints(description)
+        self._planner = LegPlanner(model, config.hip_height)
+        self._force = SupportForce(model, self._legs)
+        self._shift = WeightShift(config.weight_shift)
+        self._step = ServoStep(
+            config, model, self._planner.ankle_height, rate_hz, ankle_limit
+        )
+        self._swing = SwingTrajectory(
+            config.swing.height, config.swing.landing_phase, config.swing.search_speed
+        )
+        self._command = JointCommand.zeros(len(description.joints))
+        self._command.stiffness[:] = [joint.stiffness for joint in description.joints]
+        self._command.damping[:] = [joint.damping for joint in description.joints]
+        self._rest: Floats = np.array(description.start_position)
+        self._inertia = self._leg_inertia()
+
+    def step(self, estimate: Estimate, reference: Reference) -> JointCommand:
+        """The command of this tick. The returned object is reused by the next call."""
+        self._model.set_state(estimate)
+        if not self._shift.finished:
+            return self._shift_weight()
+        step = self._step
+        step.update(estimate, reference)
+        targets = self._walk(estimate)
+        points, forces = step.ground_reaction()
+        torque = self.config.balance.torque_gain * self._force.torques(points, forces)
+        swing = step.gait.swing
+        torque[self._legs[swing]] += (
+            self.config.balance.inertia_gain * self._inertia * targets.acceleration[swing]
+        )
+        self._report()
+        return self._fill(targets, torque)
+
+    def _shift_weight(self) -> JointCommand:
+        """Both legs carry the torso, which moves above the first stance foot."""
+        shift, model, planner = self._shift, self._model, self._planner
+        place, velocity = shift.update(self._dt, model)
+        feet = model.ankle_positions[:, :2]
+        for leg in range(2):
+            planner.support(leg, feet[leg] - place, velocity, self._lead, 0.0, self._foot_yaw(leg))
+        points, forces = shift.ground_reaction(model, self._planner.ankle_height)
+        torque = self.config.balance.torque_gain * self._force.torques(points, forces)
+        return self._fill(planner.solve(), torque)
+
+    def _walk(self, estimate: Estimate) -> LegTargets:
+        step, planner, model = self._step, self._planner, self._model
+        stance, swing = step.gait.stance, step.gait.swing
+        velocity = estimate.base_linear_velocity
+        ankle = model.ankle_positions[stance, :2] - estimate.base_position[:2]
+        yaw = self._foot_yaw(stance)
+        limit = self.config.yaw_limit
+        heading = yaw + max(-limit, min(step.heading - yaw, limit))
+        planner.support(stance, ankle, velocity[:2], self._lead, heading, yaw)
+        planner.swing(swing, self._swing_points(), velocity, self._lead, step.swing_yaw())
+        return planner.solve()
+
+    def _swing_points(self) -> Floats:
+        """World points of the swing ankle at the three instants, shape (3, 3)."""
+        step = self._step
+        phase = step.gait.phase + step.phase_rate * (self._lead + INSTANTS)
+        points = np.empty((3, 3))
+        points[:, :2] = self._swing.horizontal(phase, step.lift_off, step.landing)
+        points[:, :2] += step.ankle[:2]
+        points[:, 2] = self._planner.ankle_height + self._swing.lift(phase, 1.0 / step.phase_rate)
+        return points
+
+    def _foot_yaw(self, foot: int) -> float:
+        rotation = self._model.foot_rotations[foot]
+        return math.atan2(rotation[1, 0], rotation[0, 0])
+
+    def _fill(self, targets: LegTargets, torque: Floats) -> JointCommand:
+        command = self._command
+        command.position[:] = self._rest
+        command.position[self._legs] = targets.position
+        command.velocity[self._legs] = targets.velocity
+        command.torque[:] = torque
+        return command
+
+    def _leg_inertia(self) -> Floats:
+        """Inertia that each joint of a swinging leg moves in the start pose [kg·m²], shape (6,)."""
+        model, data = self._model.model, self._model.data
+        data.qpos[self._model.qpos_addresses] = self._rest
+        mujoco.mj_forward(model, data)
+        mass = np.zeros((model.nv, model.nv))
+        mujoco.mj_fullM(model, data, mass)
+        inertias: Floats = np.diag(mass)[self._model.dof_addresses][self._legs[0]].copy()
+        return inertias
+
+    def _report(self) -> None:
+        step, status = self._step, self.status
+        status.walking = True
+        status.phase = step.gait.phase
+        status.stance = step.gait.stance
+        status.steps = step.gait.steps
+        status.foot_flat = step.gait.foot_flat
+        status.heading = step.heading
+        status.foot_target[:2] = step.ankle[:2] + step.landing
+        status.foot_target[2] = self._planner.ankle_height
+
+
+def _leg_joints(description: RobotDescription) -> Ints:
+    """Index of each leg joint in the description's order, shape (2, 6)."""
+    names = description.joint_names
+    wanted = [[f"{side}_{joint}" for joint in LEG_JOINTS] for side in SIDES]
+    missing = [name for leg in wanted for name in leg if name not in names]
+    if missing:
+        raise DescriptionError(
+            description.file, "joints", f"a servo walker needs {', '.join(missing)}"
+        )
+    return np.array([[names.index(name) for name in leg] for leg in wanted])

@@ -1,0 +1,147 @@
+"""What a torque robot's description says under `walking`."""
+
+from typing import Literal
+
+from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
+
+from controller.walking.alteration import AlterationConfig
+from controller.walking.command_ramp import CommandConfig
+from controller.walking.foot_placement import FootPlacementConfig
+from controller.walking.gait import GaitConfig
+from controller.walking.heading import HeadingConfig
+from controller.walking.key_poses import Knots
+from hil.validation import Config
+
+Vector3 = tuple[float, float, float]
+KnotList = tuple[tuple[float, float], ...]
+GainSet = dict[str, tuple[NonNegativeFloat, NonNegativeFloat]]
+
+
+class TrackingConfig(Config):
+    """How one joint's pose is tracked."""
+
+    frame: Literal["parent", "heading"]
+    """Frame in which the target orientation and the angular velocity are expressed."""
+    scale: Vector3
+    """Factors on the gains about x, y, z of that frame (roll, pitch, yaw)."""
+
+
+class KeyPoses(Config):
+    """Target curves over the phase of a left-stance step; yaw and roll mirror on the right."""
+
+    root_pitch: KnotList
+    back_yaw: KnotList
+    back_pitch: KnotList
+    back_roll: KnotList
+    stance_knee: KnotList
+    stance_foot: KnotList
+    """Pitch of the stance foot in its heading frame, positive toe down [rad]."""
+    swing_foot: KnotList
+    """Pitch of the swing foot in the heading frame [rad]."""
+    swing_drop: KnotList
+    """Height of the swing hip above the swing ankle [m]."""
+
+    def curves(self) -> list[Knots]:
+        """All curves in the order of the fields."""
+        return [getattr(self, name) for name in type(self).model_fields]
+
+
+class RootBalanceConfig(Config):
+    """Pelvis orientation by the hips."""
+
+    scale: Vector3
+    """Factors on the root gains about x, y, z of the heading frame."""
+    hip_damping: NonNegativeFloat
+    """c of the stance hip [N·m·s²/rad²]."""
+    hip_damping_limit: PositiveFloat
+    """Largest angular velocity that counts in the damping's direction [rad/s]."""
+
+
+class SwingLegConfig(Config):
+    """Inverse kinematics of the swing leg."""
+
+    reach: float = Field(gt=0, lt=1)
+    """Longest hip-ankle distance, as a fraction of the straight leg."""
+    rate_limit: PositiveFloat
+    """Largest target joint velocity [rad/s]."""
+
+
+class VirtualForceConfig(Config):
+    """Speed control by a virtual force on the body."""
+
+    gain: tuple[float, float]
+    """Sagittal and coronal [1/s]: acceleration per speed error."""
+    limit: PositiveFloat
+    """Largest force, as a fraction of body weight."""
+
+
+class LearnedVelocityConfig(Config):
+    """The velocity curve that is learned over steps."""
+
+    knots: int = Field(ge=4)
+    threshold: PositiveFloat
+    """Mean deviation above which a step is not learned from [m/s]."""
+    rate: float = Field(gt=0, le=1)
+    """Part of the clipped deviation that is adopted."""
+
+
+class AnkleLimitConfig(Config):
+    """Stance-ankle torque that keeps the centre of pressure inside the sole."""
+
+    fraction: float = Field(gt=0, le=1)
+    """κ: part of the sole that the centre of pressure may use."""
+
+
+class TorqueWalkingConfig(Config):
+    """The whole walking section of a torque robot."""
+
+    gait: GaitConfig
+    heading: HeadingConfig
+    command: CommandConfig
+    placement: FootPlacementConfig
+    alteration: AlterationConfig
+    swing_leg: SwingLegConfig
+    virtual_force: VirtualForceConfig
+    learned_velocity: LearnedVelocityConfig
+    root_balance: RootBalanceConfig
+    ankle_limit: AnkleLimitConfig
+    tracking: dict[str, TrackingConfig]
+    """By joint: the name without side and axis, `back`, `hip`, `ankle`."""
+    side_scales: dict[str, Vector3]
+    """Factors of single joints that replace `tracking.*.scale`, by name with side."""
+    gains: dict[int, GainSet]
+    """Stiffness [N·m/rad] and damping [N·m·s/rad] by rate [Hz], then by joint and `root`."""
+    gain_rate: int | None = None
+    """Gain set to use whatever the rate; none picks it by the rate."""
+    implicit_gain_rate: int
+    """Gain set of implicit PD, whatever the rate, unless `gain_rate` is set."""
+    key_poses: KeyPoses
+    fallen_height: PositiveFloat
+    """The robot has fallen, and all torques are zero, with the root below this height [m]."""
+
+    @model_validator(mode="after")
+    def _complete(self) -> "TorqueWalkingConfig":
+        wanted = {"root", *self.tracking}
+        for rate, gains in self.gains.items():
+            if set(gains) != wanted:
+                odd = ", ".join(sorted(set(gains) ^ wanted))
+                raise ValueError(f"gains.{rate}: joints missing or unknown: {odd}")
+        for rate_key in (self.gain_rate, self.implicit_gain_rate):
+            if rate_key is not None and rate_key not in self.gains:
+                valid = ", ".join(str(rate) for rate in sorted(self.gains))
+                raise ValueError(f"gain set {rate_key} is not in gains; valid: {valid}")
+        return self
+
+    def gains_at(self, rate_hz: int, implicit: bool) -> GainSet:
+        """The gain set of a control rate [Hz].
+
+        Explicit PD takes the set of the highest published rate that is not above the control
+        rate, and the lowest set below all: gains published for a rate are stable at any higher
+        one, while those of a higher rate are not at a lower (measured: `human/README.md`).
+        """
+        if self.gain_rate is not None:
+            return self.gains[self.gain_rate]
+        if implicit:
+            return self.gains[self.implicit_gain_rate]
+        below = [rate for rate in self.gains if rate <= rate_hz]
+        return self.gains[max(below, default=min(self.gains))]

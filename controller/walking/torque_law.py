@@ -1,0 +1,110 @@
+"""The torques of one tick: every component's share, in the order of the seed's controller.
+
+Seed 000_bd1305a0ae731442, section 3: pose tracking, root balance at the hips, gravity
+compensation, virtual force, then the ankle limit and, where asked for, implicit PD.
+"""
+
+from typing import Literal
+
+import numpy as np
+
+from controller.robot_model import RobotModel
+from controller.walking.ankle_limit import limited, sole_levers
+from controller.walking.gravity_compensation import GravityCompensation
+from controller.walking.implicit_pd import ImplicitPd
+from controller.walking.joint_groups import JointGroups
+from controller.walking.pose_tracking import PoseTracking
+from controller.walking.root_balance import hip_damping, hip_moment, stance_share
+from controller.walking.step_planner import StepPlanner
+from controller.walking.torque_config import TorqueWalkingConfig
+from controller.walking.virtual_force import VirtualForce
+from hil.description import RobotDescription
+from hil.interface import SIDES, Floats
+
+
+class TorqueLaw:
+    """Joint torques from the plan of the step and the targets of `tracking`."""
+
+    def __init__(
+        self,
+        description: RobotDescription,
+        config: TorqueWalkingConfig,
+        robot: RobotModel,
+        rate_hz: int,
+        pd: Literal["explicit", "implicit"],
+        ankle_limit: bool,
+    ) -> None:
+        self._config, self._robot = config, robot
+        self.groups = groups = JointGroups(description, robot)
+        implicit = pd == "implicit"
+        dt = 1.0 / rate_hz
+        gains = config.gains_at(rate_hz, implicit)
+        self.tracking = PoseTracking(robot, groups, config, gains, dt if implicit else 0.0)
+        self._hips, self._ankles = groups.legs("hip"), groups.legs("ankle")
+        trunk = groups.parent == robot.root_body
+        trunk[self._hips] = False
+        self._trunk = np.flatnonzero(trunk)
+        self._gravity = GravityCompensation(robot, groups)
+        self._virtual = VirtualForce(config.virtual_force, robot, groups, groups.index("back"))
+        self._implicit = (
+            ImplicitPd(robot, groups, self.tracking, self._trunk, dt) if implicit else None
+        )
+        self._levers = [sole_levers(robot, description.feet[side]) for side in SIDES]  # type: ignore[index]
+        self._limit_ankle = ankle_limit
+        self._ankle_joints = np.array(
+            [[description.joint_names.index(f"{side}_ankle_{axis}") for axis in ("pitch", "roll")]
+             for side in SIDES]
+        )  # fmt: skip
+        self._last_loads = np.zeros(2)
+
+    def torques(self, plan: StepPlanner, loads: Floats) -> Floats:
+        """Torques of all joints [N·m], shape (n,); `loads` are vertical forces on the feet [N]."""
+        gait, tracking = plan.gait, self.tracking
+        feet = {int(self._ankles[gait.stance]): plan.foot_heading}
+        tracking.set_frames(plan.heading, {r: f for r, f in feet.items() if f is not None})
+        vectors = tracking.torques()
+        shares = stance_share(float(loads[gait.stance]), float(loads[gait.swing]))
+        hips = (int(self._hips[gait.stance]), int(self._hips[gait.swing]))
+        self._balance_root(vectors, hips, shares)
+        torque = vectors[: len(self.groups)]
+        torque += self._gravity.torques(gait.stance)
+        if gait.foot_flat:
+            self._push_body(torque, plan, loads)
+        self._last_loads = loads
+        axes = self._robot.joint_axes
+        joints = self.groups.project(torque, axes)
+        if self._limit_ankle and gait.foot_flat:
+            self._limit(joints, gait.stance, float(loads[gait.stance]))
+        if self._implicit is not None:
+            joints = self._implicit.correct(joints, hips, shares)
+        return joints
+
+    def _balance_root(
+        self, torques: Floats, hips: tuple[int, int], shares: tuple[float, float]
+    ) -> None:
+        """Put the root's torque on the hips; the last row of `torques` is the root's."""
+        stance, swing = hips
+        moment = hip_moment(torques[-1], torques[swing], torques[self._trunk])
+        rates = self._robot.angular_velocities
+        groups = self.groups
+        relative = rates[groups.child[stance]] - rates[groups.parent[stance]]
+        torques[stance] = shares[0] * moment + hip_damping(self._config.root_balance, relative)
+        torques[swing] += shares[1] * moment
+
+    def _push_body(self, torques: Floats, plan: StepPlanner, loads: Floats) -> None:
+        """Virtual force on the body, carried by the legs in proportion to two ticks' loads."""
+        carried = loads + self._last_loads
+        total = float(carried.sum())
+        if total > 0.0:
+            force = self._virtual.force(plan.wanted, plan.velocity, plan.heading)
+            self._virtual.add_torques(torques, force, carried / total)
+
+    def _limit(self, joints: Floats, stance: int, load: float) -> None:
+        pitch, roll = self._ankle_joints[stance]
+        joints[pitch], joints[roll] = limited(
+            self._levers[stance],
+            self._config.ankle_limit.fraction,
+            load,
+            float(joints[pitch]),
+            float(joints[roll]),
+        )

@@ -1,0 +1,61 @@
+"""Reads a sensor board without ever waiting for it."""
+
+from drivers.boards.device_clock import DeviceClock
+from drivers.boards.frames import Frame, FrameReader
+from drivers.dynamixel.budget import wire_time_ns
+from drivers.dynamixel.port import Port
+from hil.interface import NEVER_NS
+
+STALE_PERIODS = 3
+"""Missing sample periods after which a board's values count as invalid."""
+
+
+class BoardReader:
+    """The latest frame of one board, and how old it is.
+
+    A tick calls `poll`, which takes whatever has arrived. Values older than three sample periods
+    and a tick are invalid: the board fell silent, whatever it said last.
+    """
+
+    def __init__(self, port: Port, frame_size: int, period_ns: int, tick_ns: int) -> None:
+        self.port = port
+        self.latest: Frame | None = None
+        self._frames = FrameReader()
+        self._clock = DeviceClock(wire_time_ns(frame_size, port.baud))
+        self._sampled_ns = 0
+        self._stale_ns = STALE_PERIODS * period_ns + tick_ns
+
+    @property
+    def crc_errors(self) -> int:
+        """Frames with a wrong CRC."""
+        return self._frames.crc_errors
+
+    @property
+    def lost_frames(self) -> int:
+        """Gaps in the sequence numbers."""
+        return self._frames.lost_frames
+
+    @property
+    def resets(self) -> int:
+        """How often the board restarted."""
+        return self._clock.resets
+
+    def poll(self, now_ns: int) -> bool:
+        """Take what has arrived; whether there was a new frame."""
+        data = self.port.read_available()
+        if not data:
+            return False
+        frames = self._frames.feed(data)
+        if frames:
+            # The newest frame is the one with the least delay: it alone tells about the clock.
+            self.latest = frames[-1]
+            self._sampled_ns = self._clock.to_host_ns(self.latest.device_time_us, now_ns)
+        return bool(frames)
+
+    def age_ns(self, now_ns: int) -> int:
+        """Time since the latest frame was sampled [ns]; NEVER_NS before the first."""
+        return NEVER_NS if self.latest is None else max(0, now_ns - self._sampled_ns)
+
+    def is_fresh(self, now_ns: int) -> bool:
+        """Whether the latest frame is young enough to be believed."""
+        return self.age_ns(now_ns) <= self._stale_ns

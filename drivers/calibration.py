@@ -1,0 +1,79 @@
+"""Calibration of one robot: what a description cannot know, in a file of its own.
+
+A calibration belongs to one individual robot and says where it comes from; a run that drives
+hardware refuses one whose robot, joints or feet do not match the description.
+"""
+
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+import yaml
+from pydantic import Field
+
+from drivers.boards.calibration import FootCalibration, ImuCalibration
+from hil.description import RobotDescription
+from hil.errors import DescriptionError, InputError
+from hil.interface import Floats
+from hil.validation import Config, read_yaml, validate
+
+
+class Provenance(Config):
+    """Where a calibration comes from."""
+
+    date: str
+    """ISO date."""
+    method: str
+    """How it was measured, or "ideal" for a virtual robot."""
+    operator: str = ""
+    serial: str = ""
+    """Serial number of the robot."""
+    residual: float | None = None
+    """Root mean square error of the load-cell fit [N]."""
+
+
+class RobotCalibration(Config):
+    """Joint offsets, load cells and IMU mounting of one robot."""
+
+    robot: str
+    """Name in the robot description."""
+    provenance: Provenance
+    joint_offsets: dict[str, float] = Field(default_factory=dict)
+    """Servo-frame angle at which the joint is zero [rad], by joint; 0 for joints not named.
+    q = direction·(counts − 2048)/COUNTS_PER_RADIAN − offset."""
+    feet: dict[Literal["left", "right"], FootCalibration] = Field(default_factory=dict)
+    imu: ImuCalibration = ImuCalibration()
+
+    def offsets(self, joint_names: tuple[str, ...]) -> Floats:
+        """Offsets in joint order [rad], shape (n,)."""
+        return np.array([self.joint_offsets.get(name, 0.0) for name in joint_names])
+
+    def check_against(self, description: RobotDescription, file: str = "calibration") -> None:
+        """Raises DescriptionError when it does not fit the robot."""
+        if self.robot != description.name:
+            raise DescriptionError(
+                file, "robot", f"is for {self.robot!r}, the robot is {description.name!r}"
+            )
+        strangers = sorted(set(self.joint_offsets) - set(description.joint_names))
+        if strangers:
+            valid = ", ".join(description.joint_names)
+            raise DescriptionError(
+                file, "joint_offsets", f"no joint {', '.join(strangers)}; valid: {valid}"
+            )
+        for side, foot in description.feet.items():
+            if foot.board is not None and side not in self.feet:
+                raise DescriptionError(file, f"feet.{side}", "is missing: the foot has load cells")
+
+
+def load_calibration(path: Path) -> RobotCalibration:
+    """Read a calibration file. Raises InputError or DescriptionError, naming file and key."""
+    return validate(RobotCalibration, read_yaml(path), str(path))
+
+
+def save_calibration(calibration: RobotCalibration, path: Path) -> None:
+    """Write a calibration file. Raises InputError when the file cannot be written."""
+    text = yaml.safe_dump(calibration.model_dump(mode="json"), sort_keys=False)
+    try:
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written: {error.strerror}") from error

@@ -1,0 +1,127 @@
+"""Are these the servos that the robot file speaks of, and are they set up as the driver needs?
+
+EEPROM settings that are wrong are corrected where torque is off; torque itself is left as found.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from drivers.dynamixel.client import ServoClient
+from drivers.dynamixel.control_table import (
+    DriveMode,
+    OperatingMode,
+    Register,
+    StatusReturnLevel,
+)
+from drivers.dynamixel.group_access import GroupAccess
+from drivers.dynamixel.servo_models import SERVO_MODELS, ServoModel
+from hil.errors import BackendError
+
+FORBIDDEN_DRIVE_MODE = DriveMode.REVERSE | DriveMode.TORQUE_ON_BY_GOAL_UPDATE
+"""Directions are the robot file's, and a goal must not switch torque on."""
+
+
+@dataclass(frozen=True, slots=True)
+class ExpectedServo:
+    """What the robot file says of one servo."""
+
+    joint: str
+    id: int
+    model: ServoModel
+
+
+@dataclass(slots=True)
+class AuditResult:
+    """What was found on one bus."""
+
+    problems: list[str] = field(default_factory=list)
+    """Servos that are missing or wrong; with any of them the robot cannot be used."""
+    changes: list[str] = field(default_factory=list)
+    """Settings that were corrected."""
+    fast_reads: bool = True
+    """Every servo's firmware knows fast reads."""
+
+
+def audit_bus(
+    bus: str, client: ServoClient, group: GroupAccess, servos: Sequence[ExpectedServo]
+) -> AuditResult:
+    """Ping every servo, check its model and correct its settings. Raises BackendError."""
+    result = AuditResult()
+    ids = [servo.id for servo in servos]
+    # Without this a servo may not answer reads; it is RAM, and nobody acknowledges a sync write.
+    group.write_all(Register.STATUS_RETURN_LEVEL, ids, StatusReturnLevel.ALL)
+    present = [servo for servo in servos if _identify(bus, client, servo, result)]
+    if result.problems:
+        return result
+    for register in (
+        Register.BUS_WATCHDOG,
+        Register.PROFILE_ACCELERATION,
+        Register.PROFILE_VELOCITY,
+    ):
+        group.write_all(register, ids, 0)
+    _correct(bus, client, group, present, result)
+    firmware = group.read(Register.FIRMWARE_VERSION, ids)
+    result.fast_reads = all(_knows_fast_reads(servo, firmware) for servo in servos)
+    return result
+
+
+def _identify(bus: str, client: ServoClient, servo: ExpectedServo, result: AuditResult) -> bool:
+    number = client.ping(servo.id)
+    if number == servo.model.number:
+        return True
+    if number is None:
+        result.problems.append(f"bus {bus} id {servo.id} ({servo.joint}) does not answer")
+        return False
+    names = {model.number: model.name for model in SERVO_MODELS.values()}
+    found = names.get(number, f"model number {number}")
+    result.problems.append(
+        f"bus {bus} id {servo.id} ({servo.joint}) is {found}, the robot file says "
+        f"{servo.model.name}"
+    )
+    return False
+
+
+def _knows_fast_reads(servo: ExpectedServo, firmware: dict[int, int]) -> bool:
+    least = servo.model.fast_read_firmware
+    return least is not None and firmware.get(servo.id, 0) >= least
+
+
+def _wanted(register: Register, value: int) -> int:
+    """What a setting should be, given what it is."""
+    if register is Register.DRIVE_MODE:
+        return value & ~int(FORBIDDEN_DRIVE_MODE)
+    return int(OperatingMode.POSITION) if register is Register.OPERATING_MODE else 0
+
+
+def _correct(
+    bus: str,
+    client: ServoClient,
+    group: GroupAccess,
+    servos: Sequence[ExpectedServo],
+    result: AuditResult,
+) -> None:
+    ids = [servo.id for servo in servos]
+    torque = group.read(Register.TORQUE_ENABLE, ids)
+    for register in (
+        Register.RETURN_DELAY_TIME,
+        Register.DRIVE_MODE,
+        Register.OPERATING_MODE,
+        Register.HOMING_OFFSET,
+    ):
+        values = group.read(register, ids)
+        for servo in servos:
+            where = f"bus {bus} id {servo.id} ({servo.joint})"
+            if servo.id not in values or servo.id not in torque:
+                result.problems.append(f"{where} stopped answering")
+                return
+            value = values[servo.id]
+            wanted = _wanted(register, value)
+            if value == wanted:
+                continue
+            if torque[servo.id]:
+                raise BackendError(
+                    f"{where}: {register.spec.name} is {value}, must be {wanted}, and torque is "
+                    "on: switch torque off first"
+                )
+            client.write(servo.id, register, wanted)
+            result.changes.append(f"{where}: {register.spec.name} {value} -> {wanted}")

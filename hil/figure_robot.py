@@ -1,0 +1,122 @@
+"""The robot's outline from the side, drawn from its own model at recorded poses."""
+
+from dataclasses import dataclass
+
+import mujoco
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
+from matplotlib.patches import Polygon
+
+from hil.description import RobotDescription
+from hil.interface import Floats
+from hil.trace import Trace
+
+LEFT, RIGHT, BODY = "#d9722b", "#2a6f97", "#4a4e54"
+"""Colours of the left side, the right side and the rest, in every figure."""
+CIRCLE = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """One geom: points on its surface in its own frame, and how it is drawn."""
+
+    geom: int
+    points: Floats
+    """Shape (p, 3) [m]."""
+    colour: str
+    depth: float
+    """Drawing order: the right side is nearer to the eye."""
+
+
+class Outline:
+    """Draws a robot at recorded poses, seen from its right."""
+
+    def __init__(self, description: RobotDescription) -> None:
+        self._model = mujoco.MjModel.from_xml_path(str(description.model_path))
+        self._data = mujoco.MjData(self._model)
+        self._root = description.root
+        model = self._model
+        self._free = int(model.jnt_qposadr[model.body(description.root).jntadr[0]])
+        self._angles = [int(model.joint(name).qposadr[0]) for name in description.joint_names]
+        parts = [self._part(geom) for geom in range(model.ngeom)]
+        self._parts = sorted((part for part in parts if part), key=lambda part: part.depth)
+
+    def draw(self, axes: Axes, trace: Trace, tick: int, offset: float) -> None:
+        """Add the outline of one tick, its root body at the abscissa `offset` [m]."""
+        data, free = self._data, self._free
+        data.qpos[free : free + 3] = trace.base_position[tick]
+        data.qpos[free + 3 : free + 7] = trace.base_orientation[tick]
+        data.qpos[self._angles] = trace.joint_position[tick]
+        mujoco.mj_kinematics(self._model, data)
+        yaw = trace.yaw[tick]
+        forward = np.array([np.cos(yaw), np.sin(yaw), 0.0])
+        for part in self._parts:
+            place = data.geom_xpos[part.geom] - trace.base_position[tick]
+            world = part.points @ data.geom_xmat[part.geom].reshape(3, 3).T + place
+            height = world[:, 2] + trace.base_position[tick, 2]
+            hull = convex_hull(np.column_stack((world @ forward + offset, height)))
+            fill = (*to_rgb(part.colour), 0.85)
+            axes.add_patch(Polygon(hull, facecolor=fill, edgecolor="white", linewidth=0.5))
+
+    def _part(self, geom: int) -> Part | None:
+        model = self._model
+        kind, size = model.geom_type[geom], model.geom_size[geom]
+        points = surface_points(kind, size)
+        body = int(model.geom_bodyid[geom])
+        if points is None or body == 0 or model.geom_rgba[geom, 3] == 0:
+            return None
+        name = self._side(body)
+        depth = {"left": 0.0, "": 1.0, "right": 2.0}[name]
+        return Part(geom, points, {"left": LEFT, "right": RIGHT, "": BODY}[name], depth)
+
+    def _side(self, body: int) -> str:
+        """Side of a limb by the name of its body or of the nearest parent that says one."""
+        while body:
+            name = str(self._model.body(body).name)
+            for side in ("left", "right"):
+                if name.startswith(side):
+                    return side
+            body = int(self._model.body_parentid[body])
+        return ""
+
+
+def surface_points(kind: int, size: Floats) -> Floats | None:
+    """Points whose convex hull is the geom, in its own frame; None for planes and meshes."""
+    ring = np.column_stack((np.cos(CIRCLE), np.sin(CIRCLE), np.zeros_like(CIRCLE)))
+    types = mujoco.mjtGeom
+    if kind == types.mjGEOM_BOX:
+        signs = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+        return np.asarray(signs * size)
+    ball = np.vstack([ring * np.sin(t) + [0, 0, np.cos(t)] for t in np.linspace(0, np.pi, 13)])
+    if kind == types.mjGEOM_SPHERE:
+        return np.asarray(ball * size[0])
+    if kind == types.mjGEOM_ELLIPSOID:
+        return np.asarray(ball * size)
+    if kind == types.mjGEOM_CAPSULE:
+        ends = np.array([0.0, 0.0, size[1]])
+        return np.vstack((ball * size[0] + ends, ball * size[0] - ends))
+    if kind == types.mjGEOM_CYLINDER:
+        ends = np.array([0.0, 0.0, size[1]])
+        return np.vstack((ring * size[0] + ends, ring * size[0] - ends))
+    return None
+
+
+def convex_hull(points: Floats) -> Floats:
+    """Convex hull of points in the plane, counter-clockwise (Andrew's monotone chain)."""
+    ordered = sorted(map(tuple, np.round(points, 9).tolist()))
+    lower, upper = _half_hull(ordered), _half_hull(ordered[::-1])
+    return np.array(lower[:-1] + upper[:-1])
+
+
+def _half_hull(points: list[tuple[float, ...]]) -> list[tuple[float, ...]]:
+    chain: list[tuple[float, ...]] = []
+    for point in points:
+        while len(chain) > 1 and _turn(chain[-2], chain[-1], point) <= 0:
+            chain.pop()
+        chain.append(point)
+    return chain
+
+
+def _turn(a: tuple[float, ...], b: tuple[float, ...], c: tuple[float, ...]) -> float:
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

@@ -1,0 +1,66 @@
+"""report.json: one flat object a run. What each key means: docs/reports.md."""
+
+import math
+from dataclasses import asdict
+from typing import Any
+
+from hil.gait_report import gait_figures, percentiles_ms
+from hil.loop import Outcome
+from hil.request import RunRequest
+from hil.trace import Trace
+
+BACKEND_KEYS = (
+    "bus_utilisation_pct",
+    "bus_crc_errors",
+    "bus_timeouts",
+    "bus_stale_frames",
+    "temperature_max_c",
+    "torque_rms_ratio_max",
+    "duty_saturation_pct_max",
+    "voltage_min_v",
+    "energy_wh",
+)
+"""Keys that a backend's statistics fill; None where it has nothing to say."""
+
+
+def make_report(
+    request: RunRequest,
+    robot: str,
+    outcome: Outcome,
+    trace: Trace,
+    weight_n: float,
+    statistics: dict[str, float | None],
+    *,
+    truth: bool,
+) -> dict[str, Any]:
+    """The report of a run; `request` is resolved."""
+    rate_hz = request.rate_hz or 0
+    iterations, limited = trace.stabilizer_iterations, trace.stabilizer_limited
+    use = request.stabilizer and len(trace) > 0
+    return {
+        "robot": robot,
+        "backend": request.backend,
+        "bus": request.bus,
+        "rate_hz": rate_hz,
+        "seed": request.seed,
+        "duration_s": len(trace) / rate_hz,
+        "pd": request.pd,
+        "stabilizer": request.stabilizer,
+        "ankle_limit": request.ankle_limit,
+        "motion_source": "truth" if truth else "estimate",
+        "fell": outcome.fell,
+        **gait_figures(trace, weight_n),
+        **percentiles_ms("controller_ms", trace.control_ns),
+        **percentiles_ms("cycle_ms", trace.cycle_ns),
+        "deadline_misses": None if request.lockstep else outcome.missed,
+        "real_time_factor": outcome.clock_ns / outcome.wall_ns if outcome.wall_ns else None,
+        "stabilizer_iterations_mean": float(iterations.mean()) if use else None,
+        "stabilizer_limit_pct": float(100.0 * limited.mean()) if use else None,
+        **{key: _finite(statistics.get(key)) for key in BACKEND_KEYS},
+        "faults": [asdict(fault) for fault in outcome.faults],
+    }
+
+
+def _finite(value: float | None) -> float | None:
+    """NaN means unknown, which JSON writes as null."""
+    return None if value is None or not math.isfinite(value) else value

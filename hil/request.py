@@ -1,0 +1,104 @@
+"""What a run is asked to be: the command line's answer to every question, checked once."""
+
+from pathlib import Path
+from typing import Any, Literal, Self
+
+from pydantic import Field, PositiveFloat, PositiveInt, ValidationError, model_validator
+
+from hil.description import RobotDescription
+from hil.errors import InputError
+from hil.schedule import Schedules
+from hil.validation import Config
+
+BackendName = Literal["mujoco", "bus"]
+BusName = Literal["virtual", "real"]
+EstimatorName = Literal["sensors", "truth"]
+PdName = Literal["explicit", "implicit"]
+
+OPTIONS = {"rate_hz": "--rate", "duration_s": "--duration", "overrides": "--set"}
+"""Command line options whose name is not that of their field."""
+
+
+class RunRequest(Config):
+    """One run. None means: as the robot's description says (`resolved` fills it in)."""
+
+    robot: str = "minibiped"
+    """Name of a shipped robot or a YAML file."""
+    backend: BackendName | None = None
+    bus: BusName | None = None
+    """Only with the bus backend; virtual where the command line is silent."""
+    live: bool = False
+    """The operator says that real servos may move."""
+    rate_hz: PositiveInt | None = Field(default=None, le=2000)
+    duration_s: PositiveFloat = 20.0
+    """From the first walking tick [s]."""
+    seed: int = Field(default=0, ge=0)
+    realtime: bool = False
+    """Pace a simulated robot by the monotonic clock instead of in lockstep."""
+    schedules: Schedules = Schedules()
+    estimator: EstimatorName | None = None
+    pd: PdName | None = None
+    stabilizer: bool | None = None
+    ankle_limit: bool | None = None
+    overrides: tuple[str, ...] = ()
+    """`KEY=VALUE` changes of the description."""
+    out: Path | None = None
+    """The run folder itself; none makes `runs/<time>-<robot>/`."""
+    report: Path | None = None
+    """A second copy of report.json."""
+    priority: int | None = Field(default=None, ge=1, le=98)
+    """SCHED_FIFO priority of the loop."""
+
+    @classmethod
+    def checked(cls, **values: Any) -> "RunRequest":
+        """A request from a user's values; raises InputError naming the option."""
+        try:
+            return cls.model_validate(values)
+        except ValidationError as error:
+            first = error.errors()[0]
+            problem = first["msg"].removeprefix("Value error, ")
+            if not first["loc"]:
+                raise InputError(problem) from error
+            field = str(first["loc"][0])
+            option = OPTIONS.get(field, "--" + field.replace("_", "-"))
+            raise InputError(f"{option}: {problem} (got {first['input']!r})") from error
+
+    @property
+    def lockstep(self) -> bool:
+        """Whether time is the simulation's own: nothing then waits for the wall clock."""
+        return not self.realtime and self.bus != "real"
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        if self.bus == "real" and not self.live:
+            raise ValueError("--bus real moves real servos: add --live to say that you mean it")
+        if self.live and self.bus != "real":
+            raise ValueError("--live needs --bus real: it never falls back to a simulated robot")
+        if self.bus is not None and self.backend == "mujoco":
+            raise ValueError("--bus belongs to --backend bus, not to --backend mujoco")
+        if self.bus == "real" and self.estimator == "truth":
+            raise ValueError("--estimator truth needs a simulated robot; a real one has sensors")
+        if self.bus == "real" and self.schedules.pushes:
+            raise ValueError("--push needs a simulated robot")
+        if self.priority is not None and self.lockstep:
+            raise ValueError("--priority needs --realtime or --live: lockstep has no deadlines")
+        return self
+
+    def resolved(self, description: RobotDescription) -> "RunRequest":
+        """This request with the robot's defaults filled in. Raises InputError if they clash."""
+        defaults = description.defaults
+        backend = self.backend or ("bus" if self.bus is not None else defaults.backend)
+        if backend == "bus" and not description.buses:
+            raise InputError(f"{description.name} has no servo bus: use --backend mujoco")
+        if self.pd is not None and description.actuation == "servo":
+            raise InputError(f"--pd is for torque robots; {description.name} has servos")
+        filled = {
+            "backend": backend,
+            "bus": (self.bus or "virtual") if backend == "bus" else None,
+            "rate_hz": self.rate_hz or defaults.rate_hz,
+            "estimator": self.estimator or defaults.estimator,
+            "pd": self.pd or defaults.pd,
+            "stabilizer": defaults.stabilizer if self.stabilizer is None else self.stabilizer,
+            "ankle_limit": defaults.ankle_limit if self.ankle_limit is None else self.ankle_limit,
+        }
+        return self.model_copy(update=filled)

@@ -1,0 +1,92 @@
+"""One run from a session to its folder: recording, report and picture."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from hil.cycle import Sink
+from hil.errors import StrideError
+from hil.figures import draw_run
+from hil.loop import Loop, Outcome
+from hil.recorder import Recorder
+from hil.report import make_report
+from hil.run_folder import make_meta, make_run_folder, write_json
+from hil.safety import Fault
+from hil.session import Session
+from hil.trace import TraceSink
+
+
+@dataclass(frozen=True, slots=True)
+class RunResult:
+    """What a run left behind."""
+
+    folder: Path
+    report: dict[str, Any]
+
+
+def run(session: Session, *, progress: bool = True) -> RunResult:
+    """Run a session and write its folder.
+
+    The backend is opened first: a port that does not exist leaves no folder behind. Whatever the
+    loop raises is raised again, after the robot is safe and the folder is complete.
+    """
+    try:
+        session.backend.open()
+        books = Books(session, progress=progress)
+    except BaseException:
+        session.backend.close()
+        raise
+    loop = Loop(session, books.sinks)
+    try:
+        loop.run()
+    finally:
+        report = books.close(loop.outcome)
+    return RunResult(books.folder, report)
+
+
+class Books:
+    """The folder of one run, and what is written into it while and after it runs."""
+
+    def __init__(self, session: Session, *, progress: bool) -> None:
+        request, description = session.request, session.description
+        self._session = session
+        self.folder = make_run_folder(request.out, description.name)
+        self._meta = make_meta(session)
+        write_json(self.folder / "meta.json", self._meta)
+        rate_hz = request.rate_hz or description.defaults.rate_hz
+        self._trace = TraceSink(len(description.joints), round(request.duration_s * rate_hz))
+        truth = session.world is not None
+        self._recorder = Recorder(self.folder, self._meta, truth=truth, progress=progress)
+        self.sinks: tuple[Sink, ...] = (self._trace, self._recorder)
+
+    def close(self, outcome: Outcome) -> dict[str, Any]:
+        """Finish the recording, write report and picture; the report."""
+        self._close_recorder(outcome)
+        session, trace = self._session, self._trace.trace()
+        report = make_report(
+            session.request,
+            session.description.name,
+            outcome,
+            trace,
+            self._meta["weight_n"],
+            session.backend.statistics(),
+            truth=session.world is not None,
+        )
+        write_json(self.folder / "report.json", report)
+        if session.request.report is not None:
+            write_json(session.request.report, report)
+        if len(trace) > 1:
+            draw_run(trace, session.description, self._meta, self.folder / "picture.png")
+        return report
+
+    def _close_recorder(self, outcome: Outcome) -> None:
+        """A recording that failed is a fault of the run; it does not hide how the run ended."""
+        problems = []
+        try:
+            self._recorder.close()
+        except StrideError as error:
+            problems.append(str(error))
+        if self._recorder.dropped:
+            problems.append(f"{self._recorder.dropped} ticks not recorded")
+        end_s = outcome.clock_ns * 1e-9
+        outcome.faults += [Fault(end_s, "recorder", problem, "none") for problem in problems]

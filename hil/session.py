@@ -1,0 +1,25 @@
+"""The parts of one run, put together by the composition root and used by the loop."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+from hil.description import RobotDescription
+from hil.interface import Backend, Controller, Estimator, World
+from hil.request import RunRequest
+
+
+@dataclass(frozen=True, slots=True)
+class Session:
+    """A robot ready to run, known only through the interface."""
+
+    request: RunRequest
+    """Resolved: nothing is left to the robot's defaults."""
+    description: RobotDescription
+    backend: Backend
+    """Not open yet; the run opens and closes it."""
+    estimator: Estimator
+    controller: Controller
+    world: World | None = None
+    """The simulated surrounding; none on a real robot."""
+    meta: dict[str, Any] = field(default_factory=dict)
+    """Facts for meta.json that only the composition root knows."""

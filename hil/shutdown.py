@@ -1,0 +1,31 @@
+"""The way out of every run: a soft stop, torque off until it is read back, ports closed."""
+
+from hil.errors import BackendError
+from hil.interface import Backend, StopMode
+
+TORQUE_OFF_ATTEMPTS = 5
+
+
+def stop_and_close(backend: Backend) -> None:
+    """Make a robot safe, whatever state it is in.
+
+    Each stage runs even if the one before it failed. Raises BackendError if torque off could not
+    be verified, else what a stage raised.
+    """
+    try:
+        try:
+            backend.stop(StopMode.SOFT)
+        finally:
+            _torque_off(backend)
+    finally:
+        backend.close()
+
+
+def _torque_off(backend: Backend) -> None:
+    for _ in range(TORQUE_OFF_ATTEMPTS):
+        if backend.stop(StopMode.TORQUE_OFF):
+            return
+    raise BackendError(
+        f"{backend.name}: torque off was sent {TORQUE_OFF_ATTEMPTS} times and never read back: "
+        "cut the servo power by hand"
+    )

@@ -1,0 +1,193 @@
+"""The backend without wires: the interface straight on the MuJoCo plant."""
+
+from collections import deque
+
+import numpy as np
+
+from hil.description import RobotDescription
+from hil.errors import BackendError, InputError, InvalidCommandError
+from hil.interface import AppliedCommand, JointCommand, Limit, SensorFrame, StopMode
+from hil.servo import ServoGoals, ServoMapping
+from sim_backends.latency import command_latency_ns
+from sim_backends.plant import Plant
+from sim_backends.plant_clock import PlantClock
+from sim_backends.plant_sensors import PlantSensors
+from sim_backends.servo_physics import ServoTotals
+
+BUS_KEYS = ("bus_utilisation_pct", "bus_crc_errors", "bus_timeouts", "bus_stale_frames")
+SERVO_KEYS = (
+    "temperature_max_c",
+    "torque_rms_ratio_max",
+    "duty_saturation_pct_max",
+    "voltage_min_v",
+    "energy_wh",
+)
+
+
+class MujocoBackend:
+    """Implements `hil.interface.Backend` on a plant, in virtual time.
+
+    A servo robot's commands pass the same gain mapping and servo physics as on the bus, and act
+    at the first grid point after `command_latency_ns`. A torque robot takes `command.torque` at
+    once, clamped to each joint's limit, for the whole tick. Time passes in `clock.sleep_until_ns`.
+    """
+
+    name = "mujoco"
+
+    def __init__(
+        self,
+        description: RobotDescription,
+        plant: Plant,
+        mapping: ServoMapping | None,
+        rate_hz: int,
+        seed: int = 0,
+    ) -> None:
+        """Raises InputError if plant, mapping and rate do not fit each other."""
+        if (mapping is None) != (plant.servos is None):
+            raise InputError(
+                f"{description.file}: a {description.actuation} robot takes "
+                f"{'no' if mapping is not None else 'a'} servo mapping"
+            )
+        if plant.rate_hz != rate_hz:
+            raise InputError(f"plant made for {plant.rate_hz} Hz, loop at {rate_hz} Hz")
+        n = len(description.joints)
+        self._description = description
+        self._plant = plant
+        self._mapping = mapping
+        self._sensors = PlantSensors(plant, seed)
+        self.clock: PlantClock = PlantClock(plant, self._apply_pending, self._sensors.after_substep)
+        self._latency_ns = command_latency_ns(description)
+        self._torque_limit = np.array([joint.torque_limit for joint in description.joints])
+        self._frame = SensorFrame.empty(n, description.imu is not None)
+        self._applied = AppliedCommand.zeros(n)
+        self._hold = JointCommand.zeros(n)
+        self._torque = np.zeros(n)
+        self._pending: deque[tuple[int, ServoGoals]] = deque()
+        self._armed = False
+        self._open = False
+
+    def open(self) -> None:
+        """Begin; torque stays off."""
+        self._open = True
+
+    def read(self) -> SensorFrame:
+        """The frame of this moment; reused. Raises BackendError if not open."""
+        self._require_open()
+        self._sensors.fill(self._frame, self.clock.now_ns(), self._torque)
+        return self._frame
+
+    def arm(self) -> None:
+        """Adopt the present position as goal, then enable torque. Raises BackendError."""
+        frame = self.read()
+        if self._mapping is not None and self._plant.servos is not None:
+            hold = self._hold
+            hold.position[:] = frame.joint_position
+            hold.stiffness[:] = [joint.stiffness for joint in self._description.joints]
+            hold.damping[:] = [joint.damping for joint in self._description.joints]
+            goals, _ = self._mapping.map(hold, frame)
+            self._pending.clear()
+            self._plant.servos.set_goals(goals)
+        self._enable(True)
+
+    def _enable(self, on: bool) -> None:
+        servos = self._plant.servos
+        if servos is not None:
+            for servo in range(servos.enabled.size):
+                servos.set_enabled(servo, on)
+        else:
+            self._torque[:] = 0.0
+            self._plant.set_torque(self._torque)
+        self._armed = on
+
+    def write(self, command: JointCommand) -> AppliedCommand:
+        """Command every joint; the returned object is reused.
+
+        Raises InvalidCommandError, with nothing applied, if a number is not finite, and
+        BackendError if not open.
+        """
+        self._require_open()
+        require_finite(command, self._description.joint_names)
+        if self._mapping is not None:
+            goals, applied = self._mapping.map(command, self._frame)
+            # The mapping reuses its goals, and slow buses hold them for more than a tick.
+            arrays = (goals.position, goals.p_gain, goals.d_gain, goals.pwm_limit)
+            due_ns = self._frame.time_ns + self._latency_ns
+            self._pending.append((due_ns, ServoGoals(*(array.copy() for array in arrays))))
+            return applied
+        return self._apply_torque(command)
+
+    def _apply_torque(self, command: JointCommand) -> AppliedCommand:
+        applied, limit = self._applied, self._torque_limit
+        np.minimum(command.torque, limit, out=applied.torque)
+        np.maximum(applied.torque, -limit, out=applied.torque)
+        np.not_equal(applied.torque, command.torque, out=applied.limit, casting="unsafe")
+        applied.limit *= int(Limit.TORQUE)
+        applied.position[:] = command.position
+        applied.velocity[:] = command.velocity
+        if self._armed:
+            self._torque[:] = applied.torque
+            self._plant.set_torque(self._torque)
+        return applied
+
+    def _apply_pending(self, grid_ns: int) -> None:
+        """Let goals act that have arrived by the grid point to come."""
+        while self._pending and self._pending[0][0] <= grid_ns:
+            _, goals = self._pending.popleft()
+            if self._plant.servos is not None:
+                self._plant.servos.set_goals(goals)
+
+    def stop(self, mode: StopMode) -> bool:
+        """End motion at once.
+
+        Soft: servos hold their last goals; a torque robot has none to hold, its torques end.
+        """
+        if mode is StopMode.TORQUE_OFF:
+            self._pending.clear()
+            self._enable(False)
+        elif self._plant.servos is None:
+            self._torque[:] = 0.0
+            self._plant.set_torque(self._torque)
+        return True
+
+    def close(self) -> None:
+        """Torque off, and no more reading or writing."""
+        if self._open:
+            self.stop(StopMode.TORQUE_OFF)
+        self._open = False
+
+    def statistics(self) -> dict[str, float | None]:
+        """Servo figures of a servo robot; None for the bus, which is not there."""
+        statistics: dict[str, float | None] = dict.fromkeys(BUS_KEYS + SERVO_KEYS)
+        if self._plant.servos is not None:
+            statistics.update(servo_figures(self._plant.servos.totals()))
+        return statistics
+
+    def _require_open(self) -> None:
+        if not self._open:
+            raise BackendError(f"{self._description.name}: the MuJoCo backend is not open")
+
+
+def servo_figures(totals: ServoTotals) -> dict[str, float]:
+    """Totals of the servos under their report keys."""
+    values = (
+        totals.temperature_max,
+        float(totals.torque_rms_ratio.max()),
+        100.0 * float(totals.saturation.max()),
+        totals.voltage_min,
+        totals.energy / 3600.0,
+    )
+    return dict(zip(SERVO_KEYS, values, strict=True))
+
+
+def require_finite(command: JointCommand, names: tuple[str, ...]) -> None:
+    """Raise InvalidCommandError, naming the joints, unless every number is finite."""
+    if command.is_finite():
+        return
+    fields = ("position", "velocity", "stiffness", "damping", "torque")
+    bad = [
+        f"{name} ({field})"
+        for field in fields
+        for name, value in zip(names, getattr(command, field), strict=True)
+        if not np.isfinite(value)
+    ]
+    raise InvalidCommandError(f"not a finite number: {', '.join(bad)}")

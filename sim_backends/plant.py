@@ -1,0 +1,244 @@
+"""The simulated body: one MuJoCo model stepped on an integer-nanosecond grid."""
+
+import mujoco
+import numpy as np
+
+from hil.clock import substeps_per_tick
+from hil.description import RobotDescription
+from hil.errors import BackendError, InputError
+from hil.interface import Floats, Ints, Truth
+from hil.servo import MotorParameters
+from sim_backends.foot_loads import FootLoads
+from sim_backends.model import ACCELEROMETER, SUPPORT, build_model, foot_geoms, named
+from sim_backends.servo_physics import ServoPhysics
+
+DIVERGED_SPEED = 1e5
+"""Norm of all velocities that no robot reaches [rad/s, m/s]."""
+
+
+class Plant:
+    """Ground truth: the robot, its floor and, for a servo robot, its motors.
+
+    Substep i runs from i·10⁹ // (rate·N) ns to the next grid point with what stood when it began:
+    goals and torques written between two grid points act from the second one on. At first the
+    robot is in its start pose with its lowest sole point on the floor. Implements
+    `hil.interface.World`. The seed draws where in a count each encoder's zero lies.
+    """
+
+    def __init__(
+        self,
+        description: RobotDescription,
+        rate_hz: int,
+        seed: int = 0,
+        motors: MotorParameters | None = None,
+        initial_velocity: tuple[float, float] = (0.0, 0.0),
+    ) -> None:
+        """`initial_velocity`: of the root body, (x, y) [m/s]. Raises InputError."""
+        if (motors is None) != (description.actuation == "torque"):
+            raise InputError(
+                f"{description.file}: the plant of a {description.actuation} robot "
+                f"takes {'no ' if motors is not None else ''}motor parameters"
+            )
+        self.description = description
+        self.rate_hz = rate_hz
+        self.substeps = substeps_per_tick(rate_hz)
+        """Physics substeps a tick, N."""
+        self.substep_index = 0
+        self.model = build_model(description, rate_hz, motors)
+        self.data = mujoco.MjData(self.model)
+        self._find_root()
+        joints = [self._id(mujoco.mjtObj.mjOBJ_JOINT, name) for name in description.joint_names]
+        self._dofs = _selection(self.model.jnt_dofadr[joints])
+        self._angles = _selection(self.model.jnt_qposadr[joints])
+        self._find_imu()
+        self._loads = FootLoads(self.model, description)
+        self._loads_index = 0
+        self._foot_force, self._toe_force = np.zeros((2, 4)), np.zeros(2)
+        self._set_start_pose(initial_velocity)
+        n = len(description.joints)
+        self._truth = Truth(0, *(np.zeros(k) for k in (3, 4, 3, 3, n, n, 3, 3, (2, 4), 2)))
+        self.servos: ServoPhysics | None = None
+        """Motors of a servo robot."""
+        if motors is not None and description.supply is not None:
+            phase = np.random.default_rng(seed).uniform(-0.5, 0.5, n)
+            self.servos = ServoPhysics(
+                motors,
+                description.supply,
+                self.model.opt.timestep,
+                self.model.actuator_gainprm[:, 0],
+                phase,
+            )
+            self.data.ctrl[:] = self.servos.drive(self.joint_position, self.joint_velocity)
+
+    def _id(self, kind: mujoco.mjtObj, name: str) -> int:
+        return named(self.model, kind, name, self.description.model_path)
+
+    def _find_root(self) -> None:
+        model, name = self.model, self.description.root
+        self._root = self._id(mujoco.mjtObj.mjOBJ_BODY, name)
+        free = model.body_jntadr[self._root]
+        if free < 0 or model.jnt_type[free] != mujoco.mjtJoint.mjJNT_FREE:
+            raise InputError(f"{self.description.model_path}: root body {name!r} has no free joint")
+        q, v = int(model.jnt_qposadr[free]), int(model.jnt_dofadr[free])
+        qpos, self._qvel = self.data.qpos, self.data.qvel
+        self._position: Floats = qpos[q : q + 3]
+        self._orientation: Floats = qpos[q + 3 : q + 7]
+        self._linear: Floats = self._qvel[v : v + 3]
+        self._angular: Floats = self._qvel[v + 3 : v + 6]
+
+    def _find_imu(self) -> None:
+        imu = self.description.imu
+        if imu is None:
+            return
+        site = self._id(mujoco.mjtObj.mjOBJ_SITE, imu.site)
+        if self.model.site_bodyid[site] != self._root:
+            raise InputError(
+                f"{self.description.model_path}: site {imu.site!r} of the imu must "
+                f"be in {self.description.root!r}"
+            )
+        matrix = np.empty(9)
+        mujoco.mju_quat2Mat(matrix, self.model.site_quat[site])
+        self._site_axes = matrix.reshape(3, 3)
+        sensor = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_SENSOR, ACCELEROMETER)
+        address = int(self.model.sensor_adr[sensor])
+        self._accelerometer = self.data.sensordata[address : address + 3]
+
+    def _set_start_pose(self, velocity: tuple[float, float]) -> None:
+        self.data.qpos[self._angles] = self.description.start_position
+        self._orientation[:] = (1.0, 0.0, 0.0, 0.0)
+        mujoco.mj_kinematics(self.model, self.data)
+        self._position[2] -= self._lowest_sole_point()
+        self._linear[:2] = velocity
+        self.set_support(not self.description.start.moving)
+        mujoco.mj_forward(self.model, self.data)
+
+    def _lowest_sole_point(self) -> float:
+        lowest = np.inf
+        for name in foot_geoms(self.description):
+            geom = self._id(mujoco.mjtObj.mjOBJ_GEOM, name)
+            centre, half = np.split(self.model.geom_aabb[geom], 2)
+            up = self.data.geom_xmat[geom][6:9]
+            bottom = self.data.geom_xpos[geom][2] + up @ centre - np.abs(up) @ half
+            lowest = min(lowest, float(bottom))
+        return lowest
+
+    # Stepping --------------------------------------------------------------------------------
+
+    @property
+    def time_ns(self) -> int:
+        """Time of the last grid point [ns], from 0 at the start."""
+        return self.grid_time_ns(self.substep_index)
+
+    def grid_time_ns(self, index: int) -> int:
+        """Time at which substep `index` begins [ns]."""
+        return index * 1_000_000_000 // (self.rate_hz * self.substeps)
+
+    def step(self) -> None:
+        """One tick: N substeps. Raises BackendError when the simulation diverges."""
+        for _ in range(self.substeps):
+            self.substep()
+
+    def substep(self) -> None:
+        """One substep of the physics. Raises BackendError when the simulation diverges."""
+        mujoco.mj_step(self.model, self.data)
+        self.substep_index += 1
+        if not self._qvel.dot(self._qvel) < DIVERGED_SPEED**2:
+            raise BackendError(
+                f"{self.description.name}: the simulation diverged at {self.time_ns * 1e-9:.3f} s"
+            )
+        if self.servos is not None:
+            self.data.ctrl[:] = self.servos.drive(self.joint_position, self.joint_velocity)
+
+    def set_torque(self, torque: Floats) -> None:
+        """Joint torques of a torque robot [N·m], (n,), until set again."""
+        self.data.qfrc_applied[self._dofs] = torque
+
+    # What is true now ------------------------------------------------------------------------
+
+    @property
+    def joint_position(self) -> Floats:
+        """[rad], shape (n,); changes with the next substep."""
+        position: Floats = self.data.qpos[self._angles]
+        return position
+
+    @property
+    def joint_velocity(self) -> Floats:
+        """[rad/s], shape (n,); changes with the next substep."""
+        velocity: Floats = self._qvel[self._dofs]
+        return velocity
+
+    @property
+    def orientation(self) -> Floats:
+        """Of the root body, base to world (w, x, y, z); changes with the next substep."""
+        return self._orientation
+
+    @property
+    def angular_velocity(self) -> Floats:
+        """Of the root body in its own axes [rad/s], (3,); changes with the next substep."""
+        return self._angular
+
+    def specific_force(self) -> Floats:
+        """What an ideal accelerometer at the imu site feels, in base axes [m/s²], shape (3,).
+
+        Mean of the last substep, as the contact forces are.
+        """
+        force: Floats = self._site_axes @ self._accelerometer
+        return force
+
+    def foot_force(self) -> Floats:
+        """Normal corner forces of the last substep [N], shape (2, 4)."""
+        self._read_loads()
+        return self._foot_force
+
+    def _read_loads(self) -> None:
+        if self._loads_index != self.substep_index:
+            self._foot_force, self._toe_force = self._loads.read(self.data)
+            self._loads_index = self.substep_index
+
+    def truth(self) -> Truth:
+        """State at the last grid point; the returned object is reused.
+
+        Loads are those of the substep that led there; everything else is of the new state, for
+        which the positions are computed afresh, since mj_step leaves those of the state before.
+        """
+        self._read_loads()
+        model, data, truth = self.model, self.data, self._truth
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        mujoco.mj_comVel(model, data)
+        mujoco.mj_subtreeVel(model, data)
+        truth.time_ns = self.time_ns
+        truth.base_position[:] = self._position
+        truth.base_orientation[:] = self._orientation
+        truth.base_linear_velocity[:] = self._linear
+        truth.base_angular_velocity[:] = self._angular
+        truth.joint_position[:] = self.joint_position
+        truth.joint_velocity[:] = self.joint_velocity
+        truth.com[:] = data.subtree_com[self._root]
+        truth.com_velocity[:] = data.subtree_linvel[self._root]
+        truth.foot_force[:] = self._foot_force
+        truth.toe_force[:] = self._toe_force
+        return truth
+
+    # Disturbances ----------------------------------------------------------------------------
+
+    def set_push(self, force: Floats) -> None:
+        """Force at the centre of mass of the root body, world axes [N], until set again."""
+        self.data.xfrc_applied[self._root, :3] = force
+
+    def set_support(self, supported: bool) -> None:
+        """Hold the root body where it is, or let it go."""
+        support = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_EQUALITY, SUPPORT)
+        if supported:
+            # data of a weld: anchor (3), position (3) and quaternion (4) held, torque scale.
+            self.model.eq_data[support, 3:6] = self._position
+            self.model.eq_data[support, 6:10] = self._orientation
+        self.data.eq_active[support] = supported
+
+
+def _selection(addresses: Ints) -> slice | Ints:
+    """A slice where the addresses are a run, so that reading them makes a view, not a copy."""
+    start = int(addresses[0])
+    if np.array_equal(addresses, np.arange(start, start + addresses.size)):
+        return slice(start, start + addresses.size)
+    return addresses

@@ -1,0 +1,124 @@
+"""Sensor frames straight from a plant: the errors and delays of the sensors, without the bytes."""
+
+from collections import deque
+from collections.abc import Callable
+from typing import Generic, TypeVar
+
+import numpy as np
+
+from hil.interface import CORNERS, SIDES, Floats, SensorFrame
+from hil.servo import CENTRE_COUNTS, COUNTS_PER_RADIAN
+from sim_backends.latency import board_latency_ns
+from sim_backends.plant import Plant
+from sim_backends.sensor_models import CellErrors, ImuErrors
+from sim_backends.servo_physics import ServoPhysics
+
+VELOCITY_UNIT = 0.229 * 2 * np.pi / 60
+"""[rad/s] of one Present Velocity count (X-series e-manual)."""
+VOLTAGE_UNIT = 0.1
+"""[V] of one Present Input Voltage count."""
+
+SampleT = TypeVar("SampleT")
+
+
+class DelayedSamples(Generic[SampleT]):
+    """Samples taken on the physics grid, given out when they are old enough."""
+
+    def __init__(self, plant: Plant, delay_ns: int, take: Callable[[], SampleT]) -> None:
+        grid_ns = 1_000_000_000 / (plant.rate_hz * plant.substeps)
+        self._plant = plant
+        self._delay = round(delay_ns / grid_ns)
+        self._take = take
+        self._samples = deque([(plant.substep_index, take())])
+
+    def after_substep(self) -> None:
+        """Take a sample if one taken now is the one that a tick will want."""
+        index = self._plant.substep_index
+        if (index + self._delay) % self._plant.substeps == 0:
+            self._samples.append((index, self._take()))
+
+    def latest(self) -> tuple[int, SampleT]:
+        """Grid time [ns] and value of the newest sample that is old enough."""
+        newest = self._plant.substep_index - self._delay
+        while len(self._samples) > 1 and self._samples[1][0] <= newest:
+            self._samples.popleft()
+        index, sample = self._samples[0]
+        return self._plant.grid_time_ns(index), sample
+
+
+class PlantSensors:
+    """Fills sensor frames from a plant.
+
+    A servo robot's joints read as its registers would: counts of the encoder, 0.229 rev/min,
+    0.1 V, 1 °C. A torque robot's joints are exact. Cells and IMU err as `description.noise`
+    says, and are as old as their boards' wires make them.
+    """
+
+    def __init__(self, plant: Plant, seed: int) -> None:
+        description = plant.description
+        # Another stream than that of the plant's own draws from the same seed.
+        random = np.random.default_rng((seed, 1))
+        self._plant = plant
+        self._cells = CellErrors(description.noise, random, (len(SIDES), len(CORNERS)))
+        self._imu_errors = ImuErrors(description.noise, random)
+        foot_board = description.feet["left"].board
+        delay = board_latency_ns(description, description.boards[foot_board]) if foot_board else 0
+        self._feet = DelayedSamples(plant, delay, self._sample_feet)
+        self._imu: DelayedSamples[tuple[Floats, Floats, Floats]] | None = None
+        if description.imu is not None:
+            delay = board_latency_ns(description, description.boards[description.imu.board])
+            self._imu = DelayedSamples(plant, delay, self._sample_imu)
+
+    def after_substep(self) -> None:
+        """Sample what a later frame will hold."""
+        self._feet.after_substep()
+        if self._imu is not None:
+            self._imu.after_substep()
+
+    def _sample_feet(self) -> Floats:
+        return self._cells.measure(self._plant.foot_force() + self._cells.zero)
+
+    def _sample_imu(self) -> tuple[Floats, Floats, Floats]:
+        plant = self._plant
+        return self._imu_errors.measure(
+            plant.orientation, plant.angular_velocity, plant.specific_force()
+        )
+
+    def fill(self, frame: SensorFrame, now_ns: int, torque: Floats) -> None:
+        """Write the frame of this moment; `torque` [N·m] is what a torque robot applies."""
+        frame.time_ns = now_ns
+        sampled_ns = self._plant.time_ns
+        if self._plant.servos is not None:
+            _fill_servo_joints(frame, self._plant.servos)
+        else:
+            frame.joint_position[:] = self._plant.joint_position
+            frame.joint_velocity[:] = self._plant.joint_velocity
+            frame.joint_torque[:] = torque
+        frame.joint_age_ns[:] = now_ns - sampled_ns
+        frame.joint_valid[:] = True
+        taken_ns, force = self._feet.latest()
+        frame.foot_force[:] = force
+        frame.foot_age_ns[:] = now_ns - taken_ns
+        frame.foot_valid[:] = True
+        if self._imu is not None:
+            self._fill_imu(frame, *self._imu.latest())
+
+    def _fill_imu(
+        self, frame: SensorFrame, taken_ns: int, sample: tuple[Floats, Floats, Floats]
+    ) -> None:
+        frame.imu_orientation[:] = sample[0]
+        frame.imu_angular_velocity[:] = sample[1]
+        frame.imu_linear_acceleration[:] = sample[2]
+        frame.imu_age_ns = frame.time_ns - taken_ns
+        frame.imu_valid = True
+
+
+def _fill_servo_joints(frame: SensorFrame, servos: ServoPhysics) -> None:
+    sign = servos.motors.direction
+    np.subtract(servos.counts, CENTRE_COUNTS, out=frame.joint_position)
+    frame.joint_position *= sign / COUNTS_PER_RADIAN
+    np.rint(servos.velocity / VELOCITY_UNIT, out=frame.joint_velocity)
+    frame.joint_velocity *= sign * VELOCITY_UNIT
+    frame.joint_torque[:] = servos.torque()
+    frame.joint_temperature[:] = np.rint(servos.temperature())
+    frame.joint_voltage[:] = round(servos.voltage / VOLTAGE_UNIT) * VOLTAGE_UNIT

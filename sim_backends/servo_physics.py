@@ -1,0 +1,219 @@
+"""The position servos of a robot as electrical machines: from goals to terminal voltages."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from hil.description import Supply
+from hil.interface import Floats
+from hil.servo import (
+    CENTRE_COUNTS,
+    COUNTS_PER_RADIAN,
+    PWM_FULL,
+    MotorParameters,
+    ServoGoals,
+)
+
+D_DIVISOR = 16.0
+"""Position D Gain register units per internal unit (X-series e-manual, Position PID Gain)."""
+D_PERIOD = 0.001
+"""Sample time of the servo's own loop [s]; assumed: ROBOTIS does not publish it."""
+OPEN_CIRCUIT = 1e12
+"""Resistance of a motor whose bridge is off [Ω]."""
+AMBIENT = 25.0
+"""[°C]"""
+THERMAL_RESISTANCE = 5.0
+"""Winding to surroundings [K/W]; assumed."""
+THERMAL_TIME = 400.0
+"""Time constant of the servo's case [s]; assumed."""
+
+
+@dataclass(frozen=True, slots=True)
+class ServoTotals:
+    """What the servos went through since the start, for the report."""
+
+    temperature_max: float
+    """[°C]"""
+    torque_rms_ratio: Floats
+    """RMS motor torque over stall torque, shape (n,)."""
+    saturation: Floats
+    """Share of substeps with the drive at its limit, shape (n,)."""
+    voltage_min: float
+    """[V]"""
+    energy: float
+    """Taken from the supply [J]."""
+
+
+class ServoPhysics:
+    """n position servos on one supply, stepped once a physics substep.
+
+    With encoder counts c = round(s·(q)·4096/2π + 2048), goal c*, gain P and PWM limit L:
+
+        duty    u = clip((P/D)·(c* − c)/885 − (P_D/16)·T·ċ/885, ±L/885)
+        voltage v = u·V,   V = V₀ − R·Σ u·i    (the sum of the substep before)
+        current i = (v − k·q̇)/r,               torque k·i
+
+    (X-series e-manual, Position Control Mode and Position PID Gain: D = 128, P_D over 16.)
+    The joint torque itself is MuJoCo's `dcmotor`, which gets v; here i is for the supply, the
+    readings and the totals. With torque off the bridge is open: no voltage and no back-EMF
+    current, so the joint turns freely against its friction (X-series servos can be
+    back-driven by hand then). Heat is one thermal mass a servo, figures assumed.
+    """
+
+    def __init__(
+        self,
+        motors: MotorParameters,
+        supply: Supply,
+        timestep: float,
+        terminal_resistance: Floats,
+        encoder_phase: Floats,
+    ) -> None:
+        """`terminal_resistance`: the dcmotors' own, (n,), written when torque goes on or off.
+
+        `encoder_phase`: where in a count each encoder's zero lies, (n,) [counts].
+        """
+        n = motors.direction.size
+        self.motors = motors
+        self.supply = supply
+        self._timestep = timestep
+        self._terminal = terminal_resistance
+        self._sign = motors.direction.astype(np.float64)
+        self._scale = self._sign * COUNTS_PER_RADIAN
+        self._zero = CENTRE_COUNTS + encoder_phase
+        self.enabled = np.zeros(n, dtype=np.bool_)
+        self.goal = np.full(n, float(CENTRE_COUNTS))
+        """Position goal [counts], shape (n,)."""
+        self._p_gain, self._d_gain = np.zeros(n), np.zeros(n)
+        self._limit, self._conductance = np.zeros(n), np.zeros(n)
+        self._low, self._high, self._full = np.zeros(n), np.zeros(n), np.full(n, np.inf)
+        self._has_d = self._stale = False
+        self.counts = np.zeros(n)
+        """Encoder reading [counts], shape (n,)."""
+        self.velocity = np.zeros(n)
+        """Speed in the servo's own direction [rad/s], shape (n,)."""
+        self.duty = np.zeros(n)
+        """Share of the supply on the terminals, in the servo's own direction, shape (n,)."""
+        self.current = np.zeros(n)
+        """Motor current in the servo's own direction [A], shape (n,)."""
+        self.voltage = supply.voltage
+        """Supply at the servos [V]."""
+        self._terminal_voltage = np.zeros(n)
+        self._work = np.zeros(n)
+        self._flags = np.zeros(n, dtype=np.bool_)
+        self._reset_totals(n)
+        self._terminal[:] = OPEN_CIRCUIT
+
+    def _reset_totals(self, n: int) -> None:
+        self._substeps = 0
+        self._square_sum, self._heated = np.zeros(n), np.zeros(n)
+        self._saturated = np.zeros(n)
+        self._temperature = np.full(n, AMBIENT)
+        self._cooled_at = 0
+        self._temperature_max = AMBIENT
+        self._voltage_min = self.supply.voltage
+        self._energy = 0.0
+
+    # Goals -----------------------------------------------------------------------------------
+
+    def set_goals(self, goals: ServoGoals) -> None:
+        """Adopt the goals of every servo; they act from the next call of `drive`."""
+        self.goal[:] = goals.position
+        np.divide(goals.p_gain, self.motors.gain_divisor * PWM_FULL, out=self._p_gain)
+        np.multiply(goals.d_gain, D_PERIOD / (D_DIVISOR * PWM_FULL), out=self._d_gain)
+        np.multiply(goals.pwm_limit, 1.0 / PWM_FULL, out=self._limit)
+        self._stale = True
+
+    def set_gains(self, servo: int, p_gain: int, d_gain: int, pwm_limit: int) -> None:
+        """Gains and PWM limit of one servo, as register values."""
+        self._p_gain[servo] = p_gain / (self.motors.gain_divisor[servo] * PWM_FULL)
+        self._d_gain[servo] = d_gain * D_PERIOD / (D_DIVISOR * PWM_FULL)
+        self._limit[servo] = pwm_limit / PWM_FULL
+        self._stale = True
+
+    def set_enabled(self, servo: int, on: bool) -> None:
+        """Torque of one servo on, or its terminals open."""
+        resistance = float(self.motors.resistance[servo])
+        self.enabled[servo] = on
+        self._conductance[servo] = 1.0 / resistance if on else 0.0
+        self._terminal[servo] = resistance if on else OPEN_CIRCUIT
+        self._stale = True
+
+    def _refresh(self) -> None:
+        np.multiply(self._limit, self.enabled, out=self._high)
+        np.negative(self._high, out=self._low)
+        self._full[:] = np.where(self._high > 0, self._high, np.inf)
+        self._has_d = bool(self._d_gain.any())
+        self._stale = False
+
+    # One substep -----------------------------------------------------------------------------
+
+    def drive(self, position: Floats, velocity: Floats) -> Floats:
+        """Terminal voltages in joint direction [V], (n,), for the substep that begins now."""
+        if self._stale:
+            self._refresh()
+        duty = self.duty
+        np.multiply(position, self._scale, out=self.counts)
+        self.counts += self._zero
+        np.rint(self.counts, out=self.counts)
+        np.multiply(velocity, self._sign, out=self.velocity)
+        np.subtract(self.goal, self.counts, out=duty)
+        duty *= self._p_gain
+        if self._has_d:
+            duty -= self._d_gain * (self.velocity * COUNTS_PER_RADIAN)
+        np.minimum(duty, self._high, out=duty)
+        np.maximum(duty, self._low, out=duty)
+        np.multiply(duty, self.voltage, out=self._work)
+        np.multiply(self._work, self._sign, out=self._terminal_voltage)
+        self._electrify()
+        return self._terminal_voltage
+
+    def _electrify(self) -> None:
+        """Currents, supply sag and totals; the servos' voltages are in `_work`."""
+        current, work = self.current, self._work
+        np.multiply(self.velocity, self.motors.torque_constant, out=current)
+        np.subtract(work, current, out=current)
+        current *= self._conductance
+        supply_current = float(self.duty.dot(current))
+        self._energy += self.voltage * supply_current
+        self.voltage = self.supply.voltage - self.supply.resistance * supply_current
+        if self.voltage < self._voltage_min:
+            self._voltage_min = self.voltage
+        np.multiply(current, current, out=work)
+        self._square_sum += work
+        np.abs(self.duty, out=work)
+        np.greater_equal(work, self._full, out=self._flags)
+        self._saturated += self._flags
+        self._substeps += 1
+
+    # Readings --------------------------------------------------------------------------------
+
+    def torque(self) -> Floats:
+        """Motor torque in joint direction, as the current tells it [N·m], shape (n,)."""
+        torque: Floats = self.current * self._sign * self.motors.torque_constant
+        return torque
+
+    def temperature(self) -> Floats:
+        """Case temperatures [°C], shape (n,): copper loss r·i² on one thermal mass each."""
+        substeps = self._substeps - self._cooled_at
+        if substeps > 0:
+            mean_square = (self._square_sum - self._heated) / substeps
+            settled = AMBIENT + THERMAL_RESISTANCE * self.motors.resistance * mean_square
+            decay = np.exp(-substeps * self._timestep / THERMAL_TIME)
+            self._temperature = settled + (self._temperature - settled) * decay
+            self._heated[:] = self._square_sum
+            self._cooled_at = self._substeps
+            self._temperature_max = max(self._temperature_max, float(self._temperature.max()))
+        return self._temperature
+
+    def totals(self) -> ServoTotals:
+        """Extremes and sums since the start."""
+        self.temperature()
+        steps = max(self._substeps, 1)
+        stall_current = self.supply.voltage / self.motors.resistance
+        return ServoTotals(
+            self._temperature_max,
+            np.sqrt(self._square_sum / steps) / stall_current,
+            self._saturated / steps,
+            self._voltage_min,
+            self._energy * self._timestep,
+        )

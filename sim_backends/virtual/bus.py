@@ -1,0 +1,95 @@
+"""One emulated servo bus: half-duplex wire, who answers when, and the watchdog's silence."""
+
+from collections.abc import Sequence
+
+from drivers.dynamixel.control_table import BAUD_CODES
+from drivers.dynamixel.protocol import Instruction, PacketReader
+from sim_backends.latency import BITS_PER_BYTE
+from sim_backends.virtual.adapter import UsbAdapter
+from sim_backends.virtual.clock import VirtualClock
+from sim_backends.virtual.dispatch import Dispatcher, Reply
+from sim_backends.virtual.host_timing import HostTiming
+from sim_backends.virtual.servo import EmulatedServo
+
+_INSTRUCTION_BYTE = 7
+_GOAL_WRITES = {Instruction.SYNC_WRITE, Instruction.BULK_WRITE}
+
+
+class ServoBus:
+    """Servos on one wire behind one adapter.
+
+    Every byte takes ten bit times at the host's baud. A servo at another baud hears nothing. An
+    answer begins a turnaround and the servo's Return Delay Time after the packet, or after the
+    answer before it in a chain. What the host sends while servos talk is lost, as on the real
+    half-duplex wire; what it sends while it is itself still sending follows on.
+    """
+
+    def __init__(
+        self,
+        servos: Sequence[EmulatedServo],
+        adapter: UsbAdapter,
+        host: HostTiming,
+        clock: VirtualClock,
+    ) -> None:
+        self._servos = tuple(servos)
+        self._adapter = adapter
+        self._host = host
+        self._clock = clock
+        self._dispatcher = Dispatcher(self._servos)
+        self._reader = PacketReader()
+        self._baud = 0
+        self._host_until_ns = self._servos_until_ns = 0
+        self._heard_ns = clock.now_ns()
+        self._watching = False
+        self.collisions = 0
+        """Host transmissions that were lost because servos were talking."""
+        for servo in self._servos:
+            servo.on_watchdog = self._watch
+
+    def host_wrote(self, data: bytes, baud: int) -> None:
+        """Bytes leave the host now: through the adapter, along the wire, to the servos."""
+        goals = len(data) > _INSTRUCTION_BYTE and data[_INSTRUCTION_BYTE] in _GOAL_WRITES
+        leave_ns = self._host.departure_ns(self._clock.now_ns(), goals)
+        begin_ns = max(leave_ns + self._adapter.transfer_ns(), self._host_until_ns)
+        end_ns = begin_ns + len(data) * BITS_PER_BYTE * 1_000_000_000 // baud
+        self._host_until_ns = end_ns
+        self._clock.schedule(end_ns, lambda: self._arrive(data, baud, begin_ns))
+
+    def _arrive(self, data: bytes, baud: int, begin_ns: int) -> None:
+        if begin_ns < self._servos_until_ns:
+            self.collisions += 1
+            return
+        if baud != self._baud:
+            self._baud = baud
+            self._reader.reset()
+        now_ns = self._clock.now_ns()
+        for packet in self._reader.feed(data):
+            self._heard_ns = now_ns
+            self._answer(self._dispatcher.handle(packet, BAUD_CODES.get(baud, -1), now_ns))
+
+    def _answer(self, replies: Sequence[Reply]) -> None:
+        """Put answers on the wire one after another."""
+        end_ns = self._clock.now_ns()
+        segments = []
+        for reply in replies:
+            start_ns = end_ns + reply.gap_ns
+            end_ns = start_ns + len(reply.data) * BITS_PER_BYTE * 1_000_000_000 // self._baud
+            segments.append((start_ns, reply.data))
+        if segments:
+            self._servos_until_ns = end_ns
+            self._adapter.forward(segments, self._baud)
+
+    def _watch(self) -> None:
+        """Look at the watchdogs when the first of them may trip."""
+        periods = [servo.watchdog_ns for servo in self._servos if servo.watchdog_ns]
+        if periods and not self._watching:
+            self._watching = True
+            self._clock.schedule(self._heard_ns + min(periods), self._look)
+
+    def _look(self) -> None:
+        self._watching = False
+        silence_ns = self._clock.now_ns() - self._heard_ns
+        for servo in self._servos:
+            if 0 < servo.watchdog_ns <= silence_ns:
+                servo.trip()
+        self._watch()

@@ -1,0 +1,77 @@
+"""Virtual time of a virtual robot: wire events and the physics grid on one axis."""
+
+from collections.abc import Callable, Sequence
+from heapq import heappop, heappush
+from itertools import count
+
+from hil.interface import Readable
+from sim_backends.plant import Plant
+
+Callback = Callable[[], None]
+
+
+class VirtualClock:
+    """A discrete-event clock that steps a plant; implements `hil.interface.Clock`.
+
+    Time advances only inside `sleep_until_ns` and `wait_readable`. On the way, physics substeps
+    and scheduled callbacks happen in order of time; at a grid point the physics comes first, and
+    events of one time happen in the order in which they were scheduled. So a callback between two
+    grid points sees the state of the first, and what it changes acts from the second.
+    """
+
+    def __init__(self, plant: Plant) -> None:
+        self._plant = plant
+        self._now_ns = plant.time_ns
+        self._grid_ns = plant.grid_time_ns(plant.substep_index + 1)
+        self._events: list[tuple[int, int, Callback]] = []
+        self._order = count()
+        self.deliveries = 0
+        """Times that a port was given bytes; whoever gives them counts here."""
+
+    def now_ns(self) -> int:
+        """Current time [ns]."""
+        return self._now_ns
+
+    def schedule(self, time_ns: int, callback: Callback) -> None:
+        """Call back at an absolute time, or as soon as time advances if it is past."""
+        heappush(self._events, (time_ns, next(self._order), callback))
+
+    def next_ns(self) -> int:
+        """Time of the next event or grid point [ns]."""
+        events = self._events
+        return min(events[0][0], self._grid_ns) if events else self._grid_ns
+
+    def sleep_until_ns(self, time_ns: int) -> None:
+        """Advance to an absolute time; return at once if it is past."""
+        while self._advance_once(time_ns):
+            pass
+
+    def wait_readable(self, ports: Sequence[Readable], deadline_ns: int) -> None:
+        """Advance until one of the ports has bytes, or to the deadline."""
+        if any(port.in_waiting for port in ports):
+            return
+        seen = self.deliveries
+        while self._advance_once(deadline_ns):
+            if self.deliveries != seen:
+                seen = self.deliveries
+                if any(port.in_waiting for port in ports):
+                    return
+
+    def _advance_once(self, limit_ns: int) -> bool:
+        """One event or substep up to a time; False when there is none and the time is reached."""
+        events = self._events
+        if events and events[0][0] < self._grid_ns:
+            if events[0][0] <= limit_ns:
+                time_ns, _, callback = heappop(events)
+                if time_ns > self._now_ns:
+                    self._now_ns = time_ns
+                callback()
+                return True
+        elif self._grid_ns <= limit_ns:
+            self._now_ns = self._grid_ns
+            self._plant.substep()
+            self._grid_ns = self._plant.grid_time_ns(self._plant.substep_index + 1)
+            return True
+        if limit_ns > self._now_ns:
+            self._now_ns = limit_ns
+        return False
