@@ -9,7 +9,7 @@ from drivers.boards.reader import BoardReader
 from drivers.boards.sensors import BoardSensors, FootSensor, ImuSensor
 from drivers.calibration import RobotCalibration
 from drivers.dynamixel.audit import AuditResult, ExpectedServo, audit_bus
-from drivers.dynamixel.budget import BusBudget, BusTiming, bus_budget
+from drivers.dynamixel.budget import BusBudget, BusTiming, bus_budget, wire_time_ns
 from drivers.dynamixel.client import ServoClient
 from drivers.dynamixel.group_access import GroupAccess
 from drivers.dynamixel.port import Port
@@ -105,7 +105,9 @@ def assemble_boards(
 
     def reader(board: str, kind: int) -> BoardReader:
         period_ns = 1_000_000_000 // description.boards[board].rate_hz
-        return BoardReader(ports[board], FRAME_SIZE[kind], period_ns, tick_ns)
+        wire_ns = wire_time_ns(FRAME_SIZE[kind], ports[board].baud)
+        least_delay_ns = wire_ns + 1000 * description.timing.usb_transfer_us
+        return BoardReader(ports[board], least_delay_ns, period_ns, tick_ns)
 
     feet = {
         side: FootSensor(reader(foot.board, KIND_FOOT), FootConverter(calibration.feet[side]))

@@ -1,6 +1,7 @@
 """The backend of a robot with servo buses and sensor boards, real or virtual."""
 
 from collections.abc import Mapping
+from contextlib import suppress
 
 import numpy as np
 
@@ -145,6 +146,11 @@ class BusBackend:
     def stop(self, mode: StopMode) -> bool:
         """End motion; True when the result was read back."""
         self._armed = False
+        if mode is StopMode.TORQUE_OFF:
+            # Every bus gets its frames before any is waited for.
+            for part in self._parts:
+                with suppress(BackendError):
+                    part.power.send_off()
         verified = [self._stop_bus(part, mode) for part in self._parts]
         done = bool(verified) and all(verified)
         if mode is StopMode.TORQUE_OFF and done:
@@ -160,7 +166,7 @@ class BusBackend:
     def statistics(self) -> dict[str, float | None]:
         """Counters for the report."""
         counters = [bus.counters for bus in self._group.buses]
-        share = 100 / self._ticks if self._ticks else None
+        saturated_pct = 100 * self._saturated.max() / self._ticks if self._ticks else np.nan
         return {
             "bus_utilisation_pct": self._utilisation_pct(),
             "bus_crc_errors": float(sum(counter.crc_errors for counter in counters)),
@@ -168,7 +174,7 @@ class BusBackend:
             "bus_stale_frames": float(sum(counter.stale for counter in counters)),
             "temperature_max_c": _known(np.fmax.reduce(self._hottest)),
             "voltage_min_v": _known(np.fmin.reduce(self._lowest_voltage)),
-            "duty_saturation_pct_max": None if share is None else share * self._saturated.max(),
+            "duty_saturation_pct_max": _known(saturated_pct),
         }
 
     def _open_ports(self) -> None:

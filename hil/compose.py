@@ -1,75 +1,172 @@
 """The composition root: the one module that puts controller, drivers and simulation together."""
 
+from collections.abc import Mapping
 from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
 
 from controller.estimation.sensors import SensorEstimator
 from controller.estimation.truth import TruthEstimator
 from controller.walking.servo_walker import ServoWalker
 from controller.walking.torque_walker import TorqueWalker
-from drivers.calibration import Provenance, RobotCalibration
+from drivers.calibration import RobotCalibration, load_calibration
 from drivers.dynamixel.gain_mapping import GainMapping
+from drivers.robot_backend import BusBackend
+from hil.clock import MonotonicClock
 from hil.description import RobotDescription, load_robot
-from hil.errors import InputError
+from hil.errors import DescriptionError, InputError
 from hil.interface import Controller, Estimator, World
 from hil.request import RunRequest
 from hil.session import Session
+from hil.validation import validate
 from sim_backends.mujoco_backend import MujocoBackend
 from sim_backends.plant import Plant
+from sim_backends.virtual.remote import RemoteWorld, ServerProcess
+from sim_backends.virtual.robot import VirtualRobot
+from sim_backends.virtual.server import run_server, stdin_is_pipe
 
 
 def build(request: RunRequest) -> Session:
-    """Everything a run needs, unopened. Raises InputError for what cannot be put together."""
+    """Everything a run needs, not open yet. Raises InputError for what does not fit together."""
     description = load_robot(request.robot, request.overrides)
     resolved = request.resolved(description)
-    return _on_mujoco(resolved, description)
+    if resolved.backend == "mujoco":
+        return _on_mujoco(resolved, description)
+    if resolved.bus == "real":
+        return _on_real_bus(resolved, description)
+    if resolved.realtime:
+        return _on_terminals(resolved, description)
+    return _in_lockstep(resolved, description)
 
 
-def _on_mujoco(request: RunRequest, description: RobotDescription) -> Session:
-    rate_hz = request.rate_hz or description.defaults.rate_hz
-    mapping = None
-    if description.actuation == "servo":
-        mapping = GainMapping(description, _ideal_calibration(description))
-    motors = None if mapping is None else mapping.motor_parameters()
-    plant = Plant(description, rate_hz, request.seed, motors, _initial_velocity(request, description))
-    backend = MujocoBackend(description, plant, mapping, rate_hz, request.seed)
-    return Session(
-        request, description, backend, _estimator(request, description, plant),
-        _controller(request, description), plant,
+def serve_virtual(
+    robot: str, rate_hz: int | None, seed: int, overrides: tuple[str, ...], as_json: bool
+) -> None:
+    """Serve a virtual robot on pseudo-terminals in this process until it is told to stop."""
+    description = load_robot(robot, overrides)
+    if not description.buses:
+        raise InputError(f"{description.name} has no servo bus to emulate")
+    run_server(
+        description, rate_hz or description.defaults.rate_hz, seed, as_json, stdin_is_pipe()
     )
 
 
-def _initial_velocity(request: RunRequest, description: RobotDescription) -> tuple[float, float]:
-    if not description.start.moving:
-        return 0.0, 0.0
-    return _initial_speed(request, description), description.start.lateral_velocity
+def _on_mujoco(request: RunRequest, description: RobotDescription) -> Session:
+    if request.realtime:
+        raise InputError("--realtime belongs to --backend bus: it paces a robot behind ports")
+    rate_hz, seed = _rate(request), request.seed
+    velocity = (0.0, 0.0)
+    if description.start.moving:
+        velocity = (_initial_speed(request, description), description.start.lateral_velocity)
+    mapping, motors = None, None
+    if description.actuation == "servo":
+        mapping = GainMapping(description, _ideal_calibration(description, {}))
+        motors = mapping.motor_parameters()
+    plant = Plant(description, rate_hz, seed, motors, velocity)
+    backend = MujocoBackend(description, plant, mapping, rate_hz, seed)
+    return _session(request, description, backend, plant)
 
 
-def _initial_speed(request: RunRequest, description: RobotDescription) -> float:
-    return next((v for t, v in request.schedules.speed if t == 0.0), description.defaults.speed)
+def _in_lockstep(request: RunRequest, description: RobotDescription) -> Session:
+    """The dry run: the real driver on a virtual robot, both on the virtual clock."""
+    rate_hz, seed = _rate(request), request.seed
+    nominal = GainMapping(description, _ideal_calibration(description, {}))
+    plant = Plant(description, rate_hz, seed, nominal.motor_parameters())
+    robot = VirtualRobot(description, plant, seed, rate_hz)
+    robot.start()
+    calibration = _ideal_calibration(description, robot.calibration_data)
+    mapping = GainMapping(description, calibration)
+    backend = BusBackend(
+        description, robot.clock, rate_hz, robot.port_urls, calibration, mapping
+    )
+    return _session(request, description, backend, plant, closers=(robot.close,))
 
 
-def _ideal_calibration(description: RobotDescription) -> RobotCalibration:
-    today = datetime.now(UTC).date().isoformat()
-    return RobotCalibration(robot=description.name,
-                            provenance=Provenance(date=today, method="ideal"))
+def _on_terminals(request: RunRequest, description: RobotDescription) -> Session:
+    """The dry run in real time: the virtual robot is another process behind ptys."""
+    rate_hz = _rate(request)
+    server = ServerProcess(request.robot, rate_hz, request.seed, request.overrides)
+    try:
+        world = RemoteWorld(server.control)
+    except BaseException:
+        server.close()
+        raise
+    calibration = _ideal_calibration(description, world.calibration_data)
+    mapping = GainMapping(description, calibration)
+    backend = BusBackend(
+        description, MonotonicClock(), rate_hz, server.port_urls, calibration, mapping
+    )
+    closers = (world.close, server.close)
+    return _session(request, description, backend, world, closers=closers)
+
+
+def _on_real_bus(request: RunRequest, description: RobotDescription) -> Session:
+    ports = {
+        **{f"buses.{name}": bus.port for name, bus in description.buses.items()},
+        **{f"boards.{name}": board.port for name, board in description.boards.items()},
+    }
+    unknown = [key for key, port in ports.items() if port is None]
+    if unknown:
+        raise DescriptionError(
+            description.file, f"{unknown[0]}.port", "is missing: a real robot has a port for each "
+            f"bus and board (missing here: {', '.join(unknown)})"
+        )  # fmt: skip
+    if description.calibration is None:
+        raise DescriptionError(description.file, "calibration", "is missing: a real robot has one")
+    calibration = load_calibration(Path(description.file).parent / description.calibration)
+    mapping = GainMapping(description, calibration)
+    urls = {key.partition(".")[2]: port for key, port in ports.items() if port is not None}
+    backend = BusBackend(
+        description, MonotonicClock(), _rate(request), urls, calibration, mapping
+    )
+    return _session(request, description, backend, None)
+
+
+def _session(
+    request: RunRequest,
+    description: RobotDescription,
+    backend: MujocoBackend | BusBackend,
+    world: World | None,
+    **more: Any,
+) -> Session:
+    estimator = _estimator(request, description, world)
+    controller = _controller(request, description)
+    return Session(request, description, backend, estimator, controller, world, **more)
 
 
 def _estimator(
     request: RunRequest, description: RobotDescription, world: World | None
 ) -> Estimator:
-    rate_hz = request.rate_hz or description.defaults.rate_hz
     if request.estimator == "sensors":
-        return SensorEstimator(description, rate_hz)
+        return SensorEstimator(description, _rate(request))
     if world is None:
         raise InputError("--estimator truth needs a simulated robot; a real one has sensors")
     return TruthEstimator(description, world.truth)
 
 
 def _controller(request: RunRequest, description: RobotDescription) -> Controller:
-    rate_hz = request.rate_hz or description.defaults.rate_hz
-    ankle_limit = bool(request.ankle_limit)
+    rate_hz, ankle_limit = _rate(request), bool(request.ankle_limit)
     if description.actuation == "servo":
         return ServoWalker(description, rate_hz, ankle_limit)
     speed = _initial_speed(request, description)
-    pd = request.pd or "explicit"
-    return TorqueWalker(description, rate_hz, pd, ankle_limit, speed)
+    return TorqueWalker(description, rate_hz, request.pd or "explicit", ankle_limit, speed)
+
+
+def _rate(request: RunRequest) -> int:
+    if request.rate_hz is None:
+        raise InputError("--rate: the robot has no default rate")
+    return request.rate_hz
+
+
+def _initial_speed(request: RunRequest, description: RobotDescription) -> float:
+    at_start = (speed for time_s, speed in request.schedules.speed if time_s == 0.0)
+    return next(at_start, description.defaults.speed)
+
+
+def _ideal_calibration(
+    description: RobotDescription, data: Mapping[str, Any]
+) -> RobotCalibration:
+    """What a virtual robot's calibration would find, but for the errors that its seed draws."""
+    provenance = {"date": datetime.now(UTC).date().isoformat(), "method": "ideal"}
+    content = {"robot": description.name, "provenance": provenance, **data}
+    return validate(RobotCalibration, content, f"calibration of the virtual {description.name}")

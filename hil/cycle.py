@@ -66,6 +66,7 @@ class Cycle:
         self._pushing = False
         self._timing = TickTiming()
         self._truth: Truth | None = None
+        self._hand_over_ns = 0
         self._command, self._applied = JointCommand.zeros(n), AppliedCommand.zeros(n)
 
     def begin(self, first_tick: int) -> None:
@@ -125,8 +126,10 @@ class Cycle:
         started: int,
     ) -> None:
         session, timing = self._session, self._timing
+        asked = stopwatch_ns()
         if session.world is not None:
             self._truth = session.world.truth()
+        timing.truth_ns = stopwatch_ns() - asked
         record = TickRecord(
             self.schedule.time_ns(timing.tick),
             time_s,
@@ -139,6 +142,8 @@ class Cycle:
             self._truth,
             timing,
         )
-        timing.cycle_ns = stopwatch_ns() - started
+        handing_over = stopwatch_ns()
+        timing.cycle_ns = handing_over - started + self._hand_over_ns
         for sink in self._sinks:
             sink.put(record)
+        self._hand_over_ns = stopwatch_ns() - handing_over

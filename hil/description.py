@@ -180,6 +180,8 @@ class RobotDescription(Config):
     timing: Timing
     plant: Plant
     noise: Noise
+    calibration: str | None = None
+    """Calibration file of one real robot, relative to the description."""
     start: Start
     defaults: Defaults
     walking: dict[str, Any]

@@ -22,6 +22,9 @@ class Part:
     """One geom: points on its surface in its own frame, and how it is drawn."""
 
     geom: int
+    body: int
+    parent: int
+    """Body to which the trunk goes on from here; the same one for limbs and root."""
     points: Floats
     """Shape (p, 3) [m]."""
     colour: str
@@ -50,14 +53,20 @@ class Outline:
         data.qpos[self._angles] = trace.joint_position[tick]
         mujoco.mj_kinematics(self._model, data)
         yaw = trace.yaw[tick]
-        forward = np.array([np.cos(yaw), np.sin(yaw), 0.0])
+        # World axes to the picture's: along the heading, and up.
+        view = np.array([[np.cos(yaw), np.sin(yaw), 0.0], [0.0, 0.0, 1.0]])
+        origin = view @ trace.base_position[tick] - [offset, trace.base_position[tick, 2]]
         for part in self._parts:
-            place = data.geom_xpos[part.geom] - trace.base_position[tick]
-            world = part.points @ data.geom_xmat[part.geom].reshape(3, 3).T + place
-            height = world[:, 2] + trace.base_position[tick, 2]
-            hull = convex_hull(np.column_stack((world @ forward + offset, height)))
-            fill = (*to_rgb(part.colour), 0.85)
-            axes.add_patch(Polygon(hull, facecolor=fill, edgecolor="white", linewidth=0.5))
+            world = part.points @ data.geom_xmat[part.geom].reshape(3, 3).T
+            outline = convex_hull((world + data.geom_xpos[part.geom]) @ view.T - origin)
+            joints = (data.xpos[part.parent], data.xpos[part.body], data.geom_xpos[part.geom])
+            bone = np.array(joints) @ view.T - origin
+            order = 2.0 + part.depth
+            axes.plot(*bone.T, color=part.colour, linewidth=2.0, zorder=order - 0.5)
+            fill = (*to_rgb(part.colour), 0.9)
+            axes.add_patch(
+                Polygon(outline, facecolor=fill, edgecolor="white", linewidth=0.5, zorder=order)
+            )
 
     def _part(self, geom: int) -> Part | None:
         model = self._model
@@ -68,7 +77,11 @@ class Outline:
             return None
         name = self._side(body)
         depth = {"left": 0.0, "": 1.0, "right": 2.0}[name]
-        return Part(geom, points, {"left": LEFT, "right": RIGHT, "": BODY}[name], depth)
+        trunk = name == "" and model.body(body).name != self._root
+        parent = int(model.body_parentid[body]) if trunk else body
+        return Part(
+            geom, body, parent, points, {"left": LEFT, "right": RIGHT, "": BODY}[name], depth
+        )
 
     def _side(self, body: int) -> str:
         """Side of a limb by the name of its body or of the nearest parent that says one."""

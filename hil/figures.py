@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from hil.description import RobotDescription
 from hil.figure_robot import BODY, LEFT, RIGHT, Outline
+from hil.gait_report import gait_figures
 from hil.interface import CORNERS, Floats
 from hil.trace import Trace
 
@@ -44,13 +45,18 @@ def draw_run(trace: Trace, description: RobotDescription, meta: dict[str, Any], 
             draw_corners(axes, trace, foot, meta["weight_n"])
         right.sharey(left)
         right.set_ylabel("")
-        figure.suptitle(title(meta), x=0.01, ha="left", fontsize=12, fontweight="bold")
+        figure.suptitle(title(trace, meta), x=0.01, ha="left", fontsize=12, fontweight="bold")
         figure.savefig(path, dpi=130)
 
 
-def title(meta: dict[str, Any]) -> str:
+def title(trace: Trace, meta: dict[str, Any]) -> str:
     """What the picture shows, in one line."""
-    return f"{meta['robot']}: {meta['rung']}, {meta['rate_hz']} Hz, seed {meta['seed']}"
+    figures = gait_figures(trace, meta["weight_n"])
+    return (
+        f"{meta['robot']}, {meta['rung']}, {meta['rate_hz']} Hz, seed {meta['seed']}: "
+        f"{figures['steps']} steps, {figures['distance_m']:.2f} m in {trace.time_s[-1]:.0f} s, "
+        f"{figures['mean_speed_mps']:.3f} m/s (commanded {figures['target_speed_mps']:.3f})"
+    )
 
 
 def draw_strip(axes: Axes, trace: Trace, description: RobotDescription) -> None:
@@ -90,7 +96,9 @@ def draw_speed(axes: Axes, trace: Trace) -> None:
     axes.plot(trace.time_s, over_a_stride(trace, along), color=BODY, label="over one stride")
     axes.plot(trace.time_s, trace.speed, color="#c1272d", linestyle="--", label="commanded")
     axes.set(title="Speed along the heading", xlabel="time [s]", ylabel="[m/s]")
+    low, high = axes.get_ylim()
     axes.margins(x=0)
+    axes.set_ylim(low - 0.15 * (high - low), high)  # room for the legend
     axes.legend(loc="lower right", ncols=3)
 
 
@@ -121,11 +129,11 @@ def draw_corners(axes: Axes, trace: Trace, foot: int, weight_n: float) -> None:
         axes.plot(time, forces[:, corner], color=colour, linewidth=1.0)
         axes.plot([], [], color=colour, label=CORNERS[corner].replace("_", " "))
     axes.axhline(weight_n, color="#6b7078", linestyle=":", linewidth=1.0)
-    axes.annotate("weight", (time[0], weight_n), fontsize=8, color="#6b7078", va="bottom")
+    axes.text(time[0], weight_n, " weight", fontsize=8, color="#6b7078", va="bottom")
     side = ("Left", "Right")[foot]
     axes.set(title=f"{side} foot: corner forces", xlabel="time [s]", ylabel="[N]")
     axes.margins(x=0)
-    axes.set_ylim(0, None)
+    axes.set_ylim(0, 1.15 * float(trace.foot_force.sum(axis=2)[window].max(initial=1.0)))
     axes.legend(loc="upper right", ncols=5, fontsize=7, handlelength=1.2, columnspacing=0.9)
 
 
@@ -138,6 +146,7 @@ def draw_timing(axes: Axes, trace: Trace, meta: dict[str, Any]) -> None:
     bins = np.geomspace(lowest, max(highest, 2 * period_ms) * 1.05, 70).tolist()
     for label, values, colour in columns:
         axes.hist(values * 1e-6, bins=bins, color=colour, alpha=0.75, label=label)
+    axes.set_ylim(0, 1.3 * axes.get_ylim()[1])  # room for the legend
     axes.axvline(period_ms, color="#6b7078", linestyle=":", linewidth=1.0)
     clock = "lockstep" if meta["lockstep"] else "real time"
     axes.set(xscale="log", title=f"Wall time of a tick ({clock})", xlabel="[ms]", ylabel="ticks")

@@ -9,6 +9,12 @@ from hil.errors import InvalidCommandError
 from hil.interface import Ints, JointCommand, Limit
 
 
+FLAGS: Ints = np.array(
+    [Limit.POSITION, Limit.VELOCITY, Limit.STIFFNESS, Limit.DAMPING, Limit.TORQUE], dtype=np.int64
+)
+"""Flag of each row of a command."""
+
+
 class JointLimits:
     """Clamps position to the joint's range, velocity and torque to their limits, gains to >= 0.
 
@@ -16,14 +22,20 @@ class JointLimits:
     """
 
     def __init__(self, description: RobotDescription) -> None:
-        joints = description.joints
+        joints, n = description.joints, len(description.joints)
         self._names = description.joint_names
-        self._low = np.array([joint.range[0] for joint in joints])
-        self._high = np.array([joint.range[1] for joint in joints])
-        self._velocity = np.array([joint.velocity_limit for joint in joints])
-        self._torque = np.array([joint.torque_limit for joint in joints])
-        self._out = JointCommand.zeros(len(joints))
-        self.flags: Ints = np.zeros(len(joints), dtype=np.int64)
+        velocity = [joint.velocity_limit for joint in joints]
+        torque = [joint.torque_limit for joint in joints]
+        position = np.array([joint.range for joint in joints])
+        # Rows in the order of JointCommand's fields, so that one operation clamps them all.
+        none, all_ = [0.0] * n, [np.inf] * n
+        self._low = np.array(
+            [position[:, 0], np.negative(velocity), none, none, np.negative(torque)]
+        )
+        self._high = np.array([position[:, 1], velocity, all_, all_, torque])
+        self._asked, self._clamped = np.zeros((5, n)), np.zeros((5, n))
+        self._out = JointCommand(*self._clamped)
+        self.flags: Ints = np.zeros(n, dtype=np.int64)
         """`Limit` flags that the last `apply` raised, shape (n,)."""
 
     def apply(self, command: JointCommand) -> JointCommand:
@@ -31,25 +43,19 @@ class JointLimits:
 
         Raises InvalidCommandError, naming the joint, if a value is not finite.
         """
-        if not command.is_finite():
+        asked, clamped = self._asked, self._clamped
+        asked[0], asked[1], asked[2] = command.position, command.velocity, command.stiffness
+        asked[3], asked[4] = command.damping, command.torque
+        if not np.isfinite(asked).all():
             raise InvalidCommandError(self._complaint(command))
-        out = self._out
-        np.minimum(np.maximum(command.position, self._low), self._high, out=out.position)
-        np.minimum(np.maximum(command.velocity, -self._velocity), self._velocity, out=out.velocity)
-        np.minimum(np.maximum(command.torque, -self._torque), self._torque, out=out.torque)
-        np.maximum(command.stiffness, 0.0, out=out.stiffness)
-        np.maximum(command.damping, 0.0, out=out.damping)
-        self._flag(command, out)
-        return out
-
-    def _flag(self, command: JointCommand, out: JointCommand) -> None:
-        flags = self.flags
-        clamped = (out.position != command.position) & (out.stiffness > 0.0)
-        np.multiply(clamped, int(Limit.POSITION), out=flags)
-        flags += (out.velocity != command.velocity) * int(Limit.VELOCITY)
-        flags += (out.torque != command.torque) * int(Limit.TORQUE)
-        flags += (out.stiffness != command.stiffness) * int(Limit.STIFFNESS)
-        flags += (out.damping != command.damping) * int(Limit.DAMPING)
+        np.minimum(np.maximum(asked, self._low, out=clamped), self._high, out=clamped)
+        changed = clamped != asked
+        if changed.any():
+            changed[0] &= asked[2] > 0.0
+            np.dot(FLAGS, changed, out=self.flags)
+        else:
+            self.flags[:] = 0
+        return self._out
 
     def _complaint(self, command: JointCommand) -> str:
         for field in fields(command):
@@ -58,4 +64,4 @@ class JointLimits:
             if bad.size:
                 joint = self._names[bad[0]]
                 return f"command: {field.name} of joint {joint} is {values[bad[0]]}, not finite"
-        return "command: values too large to add up"
+        raise ValueError("the command is finite")

@@ -8,6 +8,7 @@ from which any reader (`hil.recording`, Foxglove, the ROS tools) finds every fie
 
 import re
 from dataclasses import fields
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -94,19 +95,19 @@ class TickWriter:
     def __init__(self, rows: np.ndarray[Any, np.dtype[np.void]]) -> None:
         self._time_ns, self._time_s = rows["time_ns"], rows["time_s"]
         parts = [name for name in rows.dtype.names or () if rows.dtype[name].names]
-        self._parts = [
-            (part, [(name, rows[part][name]) for name in rows.dtype[part].names or ()])
-            for part in parts
-        ]
+        self._parts = []
+        for part in parts:
+            names = rows.dtype[part].names or ()
+            columns = [rows[part][name] for name in names]
+            self._parts.append((attrgetter(part), attrgetter(*names), columns))
 
     def write(self, row: int, record: TickRecord) -> None:
         """Fill one row."""
         self._time_ns[row] = record.time_ns
         self._time_s[row] = record.time_s
-        for part, columns in self._parts:
-            source = getattr(record, part)
-            for name, column in columns:
-                column[row] = getattr(source, name)
+        for part, values, columns in self._parts:
+            for column, value in zip(columns, values(part(record)), strict=True):
+                column[row] = value
 
 
 def _blank_estimate(n: int) -> Estimate:

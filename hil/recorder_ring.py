@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-SLOTS = 1024
-"""3.4 s at 300 Hz: more than any disk stall the writer should meet."""
+SLOTS = 2048
+"""6.8 s at 300 Hz: more than a start of the writer or a stall of the disk takes."""
 HEADER = np.dtype([("put", "<i8"), ("taken", "<i8"), ("finished", "<i8"), ("padding", "<i8", 5)])
 
 Rows = np.ndarray[Any, np.dtype[np.void]]

@@ -92,6 +92,8 @@ class RunRequest(Config):
             raise InputError(f"{description.name} has no servo bus: use --backend mujoco")
         if self.pd is not None and description.actuation == "servo":
             raise InputError(f"--pd is for torque robots; {description.name} has servos")
+        if self.realtime and backend == "mujoco":
+            raise InputError("--realtime is for the bus backend; --backend mujoco has no deadlines")
         filled = {
             "backend": backend,
             "bus": (self.bus or "virtual") if backend == "bus" else None,

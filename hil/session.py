@@ -1,5 +1,6 @@
 """The parts of one run, put together by the composition root and used by the loop."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -23,3 +24,11 @@ class Session:
     """The simulated surrounding; none on a real robot."""
     meta: dict[str, Any] = field(default_factory=dict)
     """Facts for meta.json that only the composition root knows."""
+    closers: tuple[Callable[[], None], ...] = ()
+    """End what the composition root started, in this order, after the backend is closed."""
+
+    def close(self) -> None:
+        """Close the backend, then everything that was started for it. Safe to call twice."""
+        self.backend.close()
+        for closer in self.closers:
+            closer()

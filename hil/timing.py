@@ -36,8 +36,10 @@ class TickTiming:
     """The controller's step alone."""
     write_ns: int = 0
     """Limits and write."""
+    truth_ns: int = 0
+    """Asking a simulated world for the truth."""
     cycle_ns: int = 0
-    """From the wake-up to the end of the hand-over to the recorder."""
+    """From the wake-up to the hand-over to the recorder, and the hand-over of the tick before."""
 
 
 class TickSchedule:

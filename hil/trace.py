@@ -1,6 +1,7 @@
 """The walking ticks of a run, in memory: what reports, pictures and comparisons are made from."""
 
 from dataclasses import dataclass, fields
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -115,7 +116,7 @@ class TraceSink:
             for item in fields(Trace)
         }
         self._parts = [
-            [(name, self._columns[name]) for name in names]
+            (attrgetter(*names), [self._columns[name] for name in names])
             for names in (MOTION, STATUS, REFERENCE, TIMING)
         ]
 
@@ -131,9 +132,9 @@ class TraceSink:
             record.reference,
             record.timing,
         )
-        for source, columns in zip(sources, self._parts, strict=True):
-            for name, column in columns:
-                column[row] = getattr(source, name)
+        for source, (values, columns) in zip(sources, self._parts, strict=True):
+            for column, value in zip(columns, values(source), strict=True):
+                column[row] = value
         self._rows = row + 1
 
     def trace(self) -> Trace:

@@ -5,47 +5,68 @@ that it and the dry run agree. The virtual robot does not use them: there the by
 take their time.
 """
 
-from hil.description import Board, RobotDescription
+from hil.description import Board, Bus, RobotDescription
 
 BITS_PER_BYTE = 10
 """Start bit, eight data bits, stop bit."""
 USB_CHUNK = 62
 """Data bytes of a full-speed FTDI packet; a full one is sent at once, a rest after the timer."""
-READ_BLOCK = 21
-"""Bytes read of every servo: Present Current to Present Temperature (126 to 146)."""
+READ_BLOCK = 10
+"""Bytes read of every servo: Present Current to Present Position (126 to 135)."""
 WRITE_BLOCK = 4
 """Bytes written to every servo: Goal Position."""
 _FRAME_BYTES = {"foot": 30, "imu": 34}
 """Bytes of a board's frame: 12 around the payload of 18 or 22."""
 
 
+def read_time_ns(description: RobotDescription) -> int:
+    """From the start of a tick until the host has the answers of all servos [ns].
+
+    USB, request, the full chunks of a fast sync reply, the adapter's latency timer for its last
+    part, USB. Protocol 2.0 sizes for n servos: 14 + n bytes and 8 + n·(4 + block) bytes.
+    """
+    slowest = 0
+    for bus, n in _buses(description):
+        reply = 8 + n * (4 + READ_BLOCK)
+        full_chunks = reply - reply % USB_CHUNK
+        wire = (14 + n + full_chunks) * BITS_PER_BYTE * 1_000_000_000 // bus.baud
+        slowest = max(slowest, wire + bus.latency_timer_ms * 1_000_000)
+    return slowest + 2 * _usb_ns(description)
+
+
 def command_latency_ns(description: RobotDescription) -> int:
     """From the start of a tick to the moment at which the slowest bus has its goals [ns].
 
-    USB, request, fast sync reply with the adapter's latency timer for its last part, USB, the
-    controller, USB, sync write. Packet sizes: Protocol 2.0 (14 + n, 8 + n·(4 + block) and
-    14 + n·(1 + block) bytes for n servos). Half of the USB jitter is counted for each transfer.
+    The read, the controller, USB, and a sync write of 14 + n·(1 + block) bytes.
     """
-    usb = 1000 * description.timing.usb_transfer_us + 500 * description.noise.usb_jitter_us
     slowest = 0
-    for name, bus in description.buses.items():
-        n = sum(joint.bus == name for joint in description.joints)
-        byte_ns = BITS_PER_BYTE * 1_000_000_000 / bus.baud
-        reply = 8 + n * (4 + READ_BLOCK)
-        full_chunks = reply - reply % USB_CHUNK
-        read = (14 + n + full_chunks) * byte_ns + bus.latency_timer_ms * 1_000_000
-        write = (14 + n * (1 + WRITE_BLOCK)) * byte_ns
-        slowest = max(slowest, int(read + write))
-    return slowest + 3 * usb + 1000 * description.timing.compute_us
+    for bus, n in _buses(description):
+        size = 14 + n * (1 + WRITE_BLOCK)
+        slowest = max(slowest, size * BITS_PER_BYTE * 1_000_000_000 // bus.baud)
+    compute = 1000 * description.timing.compute_us
+    return read_time_ns(description) + compute + _usb_ns(description) + slowest
 
 
-def board_latency_ns(description: RobotDescription, board: Board) -> int:
-    """From a sample's acquisition to the moment at which the host can have its frame [ns].
+def board_age_ns(description: RobotDescription, board: Board) -> int:
+    """Age of a board's newest sample in the host, at the start of the tick that uses it [ns].
 
-    Mean over the phase between the board's own rate and the ticks, half a board period.
+    The host takes what the boards sent when it has the answers of the servos. The mean over the
+    phase between the board's rate and the ticks is half a board period.
     """
     wire = BITS_PER_BYTE * _FRAME_BYTES[board.kind] * 1_000_000_000 // board.baud
-    usb = 1000 * description.timing.usb_transfer_us + 500 * description.noise.usb_jitter_us
     wait = 500_000_000 // board.rate_hz + 500 * description.noise.board_jitter_us
-    delay = 1000 * description.noise.imu_delay_us if board.kind == "imu" else 0
-    return wire + usb + wait + delay
+    held = 1000 * description.noise.imu_delay_us if board.kind == "imu" else 0
+    return max(0, held + wait + wire + _usb_ns(description) - read_time_ns(description))
+
+
+def _buses(description: RobotDescription) -> list[tuple[Bus, int]]:
+    """Every bus and its number of servos."""
+    return [
+        (bus, sum(joint.bus == name for joint in description.joints))
+        for name, bus in description.buses.items()
+    ]
+
+
+def _usb_ns(description: RobotDescription) -> int:
+    """Mean time of one transfer."""
+    return 1000 * description.timing.usb_transfer_us + 500 * description.noise.usb_jitter_us

@@ -14,6 +14,7 @@ from sim_backends.plant_clock import PlantClock
 from sim_backends.plant_sensors import PlantSensors
 from sim_backends.servo_physics import ServoTotals
 
+_FIELDS = ("position", "velocity", "stiffness", "damping", "torque")
 BUS_KEYS = ("bus_utilisation_pct", "bus_crc_errors", "bus_timeouts", "bus_stale_frames")
 SERVO_KEYS = (
     "temperature_max_c",
@@ -100,7 +101,7 @@ class MujocoBackend:
         self._armed = on
 
     def write(self, command: JointCommand) -> AppliedCommand:
-        """Command every joint; the returned object is reused.
+        """Command every joint; the returned object is reused. HELD before `arm` and after `stop`.
 
         Raises InvalidCommandError, with nothing applied, if a number is not finite, and
         BackendError if not open.
@@ -111,6 +112,9 @@ class MujocoBackend:
             goals, applied = self._mapping.map(command, self._frame)
             # The mapping reuses its goals, and slow buses hold them for more than a tick.
             arrays = (goals.position, goals.p_gain, goals.d_gain, goals.pwm_limit)
+            if not self._armed:
+                applied.limit |= int(Limit.HELD)
+                return applied
             due_ns = self._frame.time_ns + self._latency_ns
             self._pending.append((due_ns, ServoGoals(*(array.copy() for array in arrays))))
             return applied
@@ -127,6 +131,8 @@ class MujocoBackend:
         if self._armed:
             self._torque[:] = applied.torque
             self._plant.set_torque(self._torque)
+        else:
+            applied.limit |= int(Limit.HELD)
         return applied
 
     def _apply_pending(self, grid_ns: int) -> None:
@@ -141,12 +147,10 @@ class MujocoBackend:
 
         Soft: servos hold their last goals; a torque robot has none to hold, its torques end.
         """
-        if mode is StopMode.TORQUE_OFF:
-            self._pending.clear()
+        self._pending.clear()
+        if mode is StopMode.TORQUE_OFF or self._plant.servos is None:
             self._enable(False)
-        elif self._plant.servos is None:
-            self._torque[:] = 0.0
-            self._plant.set_torque(self._torque)
+        self._armed = False
         return True
 
     def close(self) -> None:
@@ -180,14 +184,17 @@ def servo_figures(totals: ServoTotals) -> dict[str, float]:
 
 
 def require_finite(command: JointCommand, names: tuple[str, ...]) -> None:
-    """Raise InvalidCommandError, naming the joints, unless every number is finite."""
+    """Raise InvalidCommandError, naming the joints, unless every number is there and finite."""
+    arrays = {field: getattr(command, field) for field in _FIELDS}
+    shapes = {field: array.shape for field, array in arrays.items() if array.size != len(names)}
+    if shapes:
+        raise InvalidCommandError(f"{len(names)} joints, but the command has shapes {shapes}")
     if command.is_finite():
         return
-    fields = ("position", "velocity", "stiffness", "damping", "torque")
     bad = [
-        f"{name} ({field})"
-        for field in fields
-        for name, value in zip(names, getattr(command, field), strict=True)
+        f"joint {name}: commanded {field} is {value}"
+        for field, array in arrays.items()
+        for name, value in zip(names, array, strict=True)
         if not np.isfinite(value)
     ]
-    raise InvalidCommandError(f"not a finite number: {', '.join(bad)}")
+    raise InvalidCommandError("; ".join(bad))

@@ -8,7 +8,7 @@ import numpy as np
 
 from hil.interface import CORNERS, SIDES, Floats, SensorFrame
 from hil.servo import CENTRE_COUNTS, COUNTS_PER_RADIAN
-from sim_backends.latency import board_latency_ns
+from sim_backends.latency import board_age_ns
 from sim_backends.plant import Plant
 from sim_backends.sensor_models import CellErrors, ImuErrors
 from sim_backends.servo_physics import ServoPhysics
@@ -62,11 +62,11 @@ class PlantSensors:
         self._cells = CellErrors(description.noise, random, (len(SIDES), len(CORNERS)))
         self._imu_errors = ImuErrors(description.noise, random)
         foot_board = description.feet["left"].board
-        delay = board_latency_ns(description, description.boards[foot_board]) if foot_board else 0
+        delay = board_age_ns(description, description.boards[foot_board]) if foot_board else 0
         self._feet = DelayedSamples(plant, delay, self._sample_feet)
         self._imu: DelayedSamples[tuple[Floats, Floats, Floats]] | None = None
         if description.imu is not None:
-            delay = board_latency_ns(description, description.boards[description.imu.board])
+            delay = board_age_ns(description, description.boards[description.imu.board])
             self._imu = DelayedSamples(plant, delay, self._sample_imu)
 
     def after_substep(self) -> None:

@@ -34,6 +34,8 @@ class SwingConfig(Config):
 
     height: PositiveFloat
     """Lift of the foot at mid-swing [m]."""
+    flatness: float = Field(ge=0, le=0.25)
+    """Third harmonic of the lift speed: trades peak knee speed against knee acceleration."""
     landing_phase: PositiveFloat
     """The foot is above its landing point from this phase on."""
     search_speed: PositiveFloat
@@ -51,6 +53,10 @@ class BalanceConfig(Config):
     """ZMP limit as a fraction of the ankle's distance to the nearer sole end."""
     limit_y: float = Field(gt=0, le=1)
     """ZMP limit as a fraction of the sole's half width."""
+    feedback: float = Field(ge=0)
+    """Factor on the error of the measured centre of pressure, added to the wanted one."""
+    settle_time: float = Field(ge=0)
+    """The measured centre of pressure counts from this time in a step on [s]."""
     load_transfer_time: PositiveFloat
     """The feed-forward load moves to a new stance foot in this time [s]."""
     torque_gain: float = Field(ge=0)

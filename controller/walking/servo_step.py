@@ -15,6 +15,8 @@ from hil.interface import Estimate, Floats, Reference
 
 MAX_PHASE_SPEEDUP = 2.5
 """Bound on how much faster than nominal the phase may run when landing is urgent."""
+LOADED = 0.3
+"""Share of body weight on the stance foot from which its measured cop is used."""
 
 
 class ServoStep:
@@ -42,7 +44,9 @@ class ServoStep:
         self._alteration = Alteration(config.alteration)
         self._mean_speed = StepAverage()
         self._pendulum = Pendulum(1.0, config.gait.period)
-        self._pressure_limit = _pressure_limit(config, model, ankle_limit)
+        self._sole = _sole_extent(model)
+        share = (config.balance.limit_x, config.balance.limit_y) if ankle_limit else (1.0, 1.0)
+        self._pressure_limit = (share[0] * self._sole[0], share[1] * self._sole[1])
         self._speed = 0.0
         self._lateral = 0.0
         self._width = config.placement.step_width
@@ -62,6 +66,7 @@ class ServoStep:
         self._velocity = (0.0, 0.0)
         self._capture = (0.0, 0.0)
         self._pressure = (0.0, 0.0)
+        self._force_point = (0.0, 0.0)
 
     def update(self, estimate: Estimate, reference: Reference) -> None:
         """Bring the step to the estimate's time."""
@@ -80,6 +85,7 @@ class ServoStep:
         self._observe(estimate)
         self._mean_speed.add(self._velocity[0])
         self._set_pressure()
+        self._set_force_point(estimate)
         remaining = self._set_timing()
         if gait.phase < self._config.placement.freeze_phase:
             self._set_landing(remaining)
@@ -92,11 +98,11 @@ class ServoStep:
         model, gait = self._model, self.gait
         points = model.ankle_positions.copy()
         points[:, 2] -= self._ankle_height
-        points[gait.stance, :2] += self._to_world(*self._pressure)
+        points[gait.stance, :2] += self._to_world(*self._force_point)
         height = self._model.com[2]
         push = self._to_world(
-            (self._place[0] - self._pressure[0]) / height,
-            (self._place[1] - self._pressure[1]) / height,
+            (self._place[0] - self._force_point[0]) / height,
+            (self._place[1] - self._force_point[1]) / height,
         )
         share = min(gait.time_in_step / self._config.balance.load_transfer_time, 1.0)
         if gait.steps == 0:
@@ -160,6 +166,22 @@ class ServoStep:
             _clip(config.gain_y * (self._capture[1] - start[1] * growth), limit[1]),
         )
 
+    def _set_force_point(self, estimate: Estimate) -> None:
+        """Where the feed-forward force acts: p, moved against the error of the measured cop."""
+        force = estimate.foot_force[self.gait.stance]
+        load = float(force.sum())
+        self._force_point = self._pressure
+        config = self._config.balance
+        if load < LOADED * self.gait.weight or self.gait.time_in_step < config.settle_time:
+            return
+        corners = self._model.corner_positions[self.gait.stance, :, :2]
+        measured = self._to_heading(force @ corners / load - self.ankle[:2])
+        p, limit = self._pressure, self._sole
+        self._force_point = (
+            _clip(p[0] + config.feedback * (p[0] - measured[0]), limit[0]),
+            _clip(p[1] + config.feedback * (p[1] - measured[1]), limit[1]),
+        )
+
     def _set_timing(self) -> float:
         """Set the phase rate; returns the remaining time of the step [s]."""
         gait, pendulum = self.gait, self._pendulum
@@ -212,13 +234,7 @@ def _clip(value: float, limit: float) -> float:
     return max(-limit, min(value, limit))
 
 
-def _pressure_limit(
-    config: ServoWalkingConfig, model: RobotModel, ankle_limit: bool
-) -> tuple[float, float]:
-    """How far the centre of pressure may be from the ankle, sagittal and lateral [m]."""
-    corners = model.corner_positions[0] - model.ankle_positions[0]
-    nearer_end = float(np.abs(corners[:, 0]).min())
-    half_width = float(np.abs(corners[:, 1]).min())
-    if not ankle_limit:
-        return nearer_end, half_width
-    return config.balance.limit_x * nearer_end, config.balance.limit_y * half_width
+def _sole_extent(model: RobotModel) -> tuple[float, float]:
+    """Distance of the ankle from the nearer sole end and from the nearer sole side [m]."""
+    corners = np.abs(model.corner_positions[0] - model.ankle_positions[0])
+    return float(corners[:, 0].min()), float(corners[:, 1].min())

@@ -47,9 +47,7 @@ class ServoWalker:
         self._step = ServoStep(
             config, model, self._planner.ankle_height, rate_hz, ankle_limit
         )
-        self._swing = SwingTrajectory(
-            config.swing.height, config.swing.landing_phase, config.swing.search_speed
-        )
+        self._swing = SwingTrajectory(config.swing)
         self._command = JointCommand.zeros(len(description.joints))
         self._command.stiffness[:] = [joint.stiffness for joint in description.joints]
         self._command.damping[:] = [joint.damping for joint in description.joints]

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from controller.walking.servo_config import SwingConfig
 from hil.interface import Floats
 
 
@@ -13,24 +14,23 @@ class SwingTrajectory:
 
     Horizontal: start + (target − start)·s(φ/φ_l), s(u) = 10u³ − 15u⁴ + 6u⁵, so the foot rests
     above its landing point from φ_l on (a target still moving at touch-down makes joint-speed
-    spikes). Height: H(1 − cos 2πφ)/2 up to φ = 1, then down through the ground at v_s until
-    contact is felt.
+    spikes). Height, with α = 2πφ: H(1 − cos α + a(1 − cos 3α)/3)/(2 + 2a/3) up to φ = 1, whose
+    speed sin α + a·sin 3α is flatter than a sine and so asks for a slower knee (a = 0.2: −20 %);
+    after φ = 1 down through the ground at v_s until contact is felt.
     """
 
-    height: float
-    """H [m]."""
-    landing_phase: float
-    """φ_l."""
-    search_speed: float
-    """v_s [m/s]."""
+    config: SwingConfig
+    """H = height, a = flatness, φ_l = landing_phase, v_s = search_speed."""
 
     def horizontal(self, phase: Floats, start: Floats, target: Floats) -> Floats:
         """Points at phases of shape (k,), between points of shape (2,): shape (k, 2) [m]."""
-        u = np.minimum(np.maximum(phase / self.landing_phase, 0.0), 1.0)
+        u = np.minimum(np.maximum(phase / self.config.landing_phase, 0.0), 1.0)
         share = u * u * u * (10.0 + u * (6.0 * u - 15.0))
         return start + share[:, None] * (target - start)
 
     def lift(self, phase: Floats, period: float) -> Floats:
         """Heights above the ground at phases of shape (k,) [m]; `period` is 1/φ̇ [s]."""
-        raised = self.height * 0.5 * (1.0 - np.cos(2.0 * np.pi * np.minimum(phase, 1.0)))
-        return raised - self.search_speed * period * np.maximum(phase - 1.0, 0.0)
+        angle, a = 2.0 * np.pi * np.minimum(phase, 1.0), self.config.flatness
+        wave = 1.0 - np.cos(angle) + a / 3.0 * (1.0 - np.cos(3.0 * angle))
+        raised = self.config.height * wave / (2.0 + a * 2.0 / 3.0)
+        return raised - self.config.search_speed * period * np.maximum(phase - 1.0, 0.0)

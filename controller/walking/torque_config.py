@@ -113,6 +113,8 @@ class TorqueWalkingConfig(Config):
     """Stiffness [N·m/rad] and damping [N·m·s/rad] by rate [Hz], then by joint and `root`."""
     gain_rate: int | None = None
     """Gain set to use whatever the rate; none picks it by the rate."""
+    explicit_gain_rates: tuple[int, ...] = Field(min_length=1)
+    """Sets from which explicit PD picks by its control rate."""
     implicit_gain_rate: int
     """Gain set of implicit PD, whatever the rate, unless `gain_rate` is set."""
     key_poses: KeyPoses
@@ -126,7 +128,8 @@ class TorqueWalkingConfig(Config):
             if set(gains) != wanted:
                 odd = ", ".join(sorted(set(gains) ^ wanted))
                 raise ValueError(f"gains.{rate}: joints missing or unknown: {odd}")
-        for rate_key in (self.gain_rate, self.implicit_gain_rate):
+        chosen = (self.gain_rate, self.implicit_gain_rate, *self.explicit_gain_rates)
+        for rate_key in chosen:
             if rate_key is not None and rate_key not in self.gains:
                 valid = ", ".join(str(rate) for rate in sorted(self.gains))
                 raise ValueError(f"gain set {rate_key} is not in gains; valid: {valid}")
@@ -135,13 +138,13 @@ class TorqueWalkingConfig(Config):
     def gains_at(self, rate_hz: int, implicit: bool) -> GainSet:
         """The gain set of a control rate [Hz].
 
-        Explicit PD takes the set of the highest published rate that is not above the control
-        rate, and the lowest set below all: gains published for a rate are stable at any higher
-        one, while those of a higher rate are not at a lower (measured: `human/README.md`).
+        Explicit PD takes, of the sets it may pick from, that of the highest rate which is not
+        above the control rate, or the lowest: a set that is stable at its own rate is so at
+        higher ones, but not at lower ones.
         """
         if self.gain_rate is not None:
             return self.gains[self.gain_rate]
         if implicit:
             return self.gains[self.implicit_gain_rate]
-        below = [rate for rate in self.gains if rate <= rate_hz]
-        return self.gains[max(below, default=min(self.gains))]
+        below = [rate for rate in self.explicit_gain_rates if rate <= rate_hz]
+        return self.gains[max(below, default=min(self.explicit_gain_rates))]

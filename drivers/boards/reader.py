@@ -2,7 +2,6 @@
 
 from drivers.boards.device_clock import DeviceClock
 from drivers.boards.frames import Frame, FrameReader
-from drivers.dynamixel.budget import wire_time_ns
 from drivers.dynamixel.port import Port
 from hil.interface import NEVER_NS
 
@@ -17,11 +16,12 @@ class BoardReader:
     and a tick are invalid: the board fell silent, whatever it said last.
     """
 
-    def __init__(self, port: Port, frame_size: int, period_ns: int, tick_ns: int) -> None:
+    def __init__(self, port: Port, least_delay_ns: int, period_ns: int, tick_ns: int) -> None:
+        """`least_delay_ns`: from sampling to the host, of the fastest frame there can be."""
         self.port = port
         self.latest: Frame | None = None
         self._frames = FrameReader()
-        self._clock = DeviceClock(wire_time_ns(frame_size, port.baud))
+        self._clock = DeviceClock(least_delay_ns)
         self._sampled_ns = 0
         self._stale_ns = STALE_PERIODS * period_ns + tick_ns
 

@@ -2,11 +2,14 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Literal
 
 from drivers.boards.calibration import FootConverter, ImuConverter
 from drivers.boards.frames import ALL_CELLS, FootFrame, ImuFrame, ImuStatus
 from drivers.boards.reader import BoardReader
 from hil.interface import SIDES, SensorFrame
+
+Side = Literal["left", "right"]
 
 _CELL_VALID = tuple(tuple(bool(status >> cell & 1) for cell in range(4)) for status in range(16))
 _NO_CELL = (False,) * 4
@@ -62,7 +65,7 @@ class ImuSensor:
 class BoardSensors:
     """All boards of a robot."""
 
-    def __init__(self, feet: Mapping[str, FootSensor], imu: ImuSensor | None) -> None:
+    def __init__(self, feet: Mapping[Side, FootSensor], imu: ImuSensor | None) -> None:
         self._feet = [(SIDES.index(side), foot) for side, foot in feet.items()]
         self._imu = imu
 

@@ -52,11 +52,15 @@ class BusPower:
         """From now on a bus without packets stops its servos. Raises BackendError."""
         self._write_verified(Register.BUS_WATCHDOG, dict.fromkeys(self._ids, WATCHDOG_UNITS))
 
+    def send_off(self) -> None:
+        """Send torque-off frames without waiting for anybody."""
+        self._group.write_all(Register.TORQUE_ENABLE, self._ids, 0)
+        self._group.write_all(Register.BUS_WATCHDOG, self._ids, 0)
+
     def off(self) -> bool:
         """Switch torque off until every servo says so; False if one does not."""
         for _ in range(TORQUE_OFF_ATTEMPTS):
-            self._group.write_all(Register.TORQUE_ENABLE, self._ids, 0)
-            self._group.write_all(Register.BUS_WATCHDOG, self._ids, 0)
+            self.send_off()
             values = self._group.read(Register.TORQUE_ENABLE, self._ids)
             if len(values) == len(self._ids) and not any(values.values()):
                 return True

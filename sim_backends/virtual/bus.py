@@ -82,9 +82,13 @@ class ServoBus:
     def _watch(self) -> None:
         """Look at the watchdogs when the first of them may trip."""
         periods = [servo.watchdog_ns for servo in self._servos if servo.watchdog_ns]
-        if periods and not self._watching:
-            self._watching = True
-            self._clock.schedule(self._heard_ns + min(periods), self._look)
+        if not periods or self._watching:
+            return
+        self._watching = True
+        now_ns, shortest = self._clock.now_ns(), min(periods)
+        due_ns = self._heard_ns + shortest
+        # One that is silent for longer already has its torque off and will not trip: look later.
+        self._clock.schedule(due_ns if due_ns > now_ns else now_ns + shortest, self._look)
 
     def _look(self) -> None:
         self._watching = False

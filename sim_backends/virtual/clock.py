@@ -20,7 +20,7 @@ class VirtualClock:
     """
 
     def __init__(self, plant: Plant) -> None:
-        self._plant = plant
+        self.plant = plant
         self._now_ns = plant.time_ns
         self._grid_ns = plant.grid_time_ns(plant.substep_index + 1)
         self._events: list[tuple[int, int, Callback]] = []
@@ -69,8 +69,8 @@ class VirtualClock:
                 return True
         elif self._grid_ns <= limit_ns:
             self._now_ns = self._grid_ns
-            self._plant.substep()
-            self._grid_ns = self._plant.grid_time_ns(self._plant.substep_index + 1)
+            self.plant.substep()
+            self._grid_ns = self.plant.grid_time_ns(self.plant.substep_index + 1)
             return True
         if limit_ns > self._now_ns:
             self._now_ns = limit_ns

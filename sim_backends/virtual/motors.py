@@ -57,10 +57,12 @@ class MotorBank:
         self._plant = plant
         # A model without current measurement shows load in 0.1 % of stall instead.
         stall = physics.motors.stall_torque(physics.supply.voltage) / physics.motors.torque_constant
-        self._current_unit: Floats = np.array([
-            amps / 1000 if model.current_unit is None else model.current_unit
-            for model, amps in zip(models, stall, strict=True)
-        ])
+        self._current_unit: Floats = np.array(
+            [
+                amps / 1000 if model.current_unit is None else model.current_unit
+                for model, amps in zip(models, stall, strict=True)
+            ]
+        )
         self._index = self._temperature_index = -TEMPERATURE_SUBSTEPS
         self._readings: list[Reading] = []
         self._temperatures: list[int] = []
@@ -78,15 +80,19 @@ class MotorBank:
         if index - self._temperature_index >= TEMPERATURE_SUBSTEPS:
             self._temperature_index = index
             self._temperatures = np.rint(physics.temperature()).astype(int).tolist()
-        table = np.rint((
-            physics.duty * PWM_FULL,
-            physics.current / self._current_unit,
-            physics.velocity / VELOCITY_UNIT,
-            physics.counts,
-        )).astype(int)
+        table = np.rint(
+            (
+                physics.duty * PWM_FULL,
+                physics.current / self._current_unit,
+                physics.velocity / VELOCITY_UNIT,
+                physics.counts,
+            )
+        ).astype(int)
         voltage = round(physics.voltage / VOLTAGE_UNIT)
-        return [Reading(*row, voltage, temperature)
-                for row, temperature in zip(table.T.tolist(), self._temperatures, strict=True)]
+        return [
+            Reading._make((*row, voltage, temperature))
+            for row, temperature in zip(table.T.tolist(), self._temperatures, strict=True)
+        ]
 
 
 class Motor:

@@ -6,6 +6,7 @@ pyserial finds this module by its name in the packages of `serial.protocol_handl
 from typing import Any
 
 import serial
+from typing_extensions import Buffer
 
 from sim_backends.virtual.host_port import Device, HostPort
 
@@ -26,7 +27,7 @@ def unregister(url: str) -> None:
     _lines.pop(url, None)
 
 
-class Serial(serial.SerialBase):  # type: ignore[misc]
+class Serial(serial.SerialBase):
     """pyserial's interface on a virtual line. It never blocks: time passes in the virtual clock."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
@@ -63,12 +64,13 @@ class Serial(serial.SerialBase):  # type: ignore[misc]
         """Up to `size` bytes that have arrived."""
         return self._held().take(size)
 
-    def write(self, data: bytes) -> int:
+    def write(self, data: Buffer, /) -> int:
         """Hand bytes to the device at the present virtual time."""
         self._held()
+        sent = bytes(data)
         if self._device is not None:
-            self._device.host_wrote(bytes(data), self._baudrate)
-        return len(data)
+            self._device.host_wrote(sent, self.baudrate)
+        return len(sent)
 
     def reset_input_buffer(self) -> None:
         """Discard what has arrived."""

@@ -1,10 +1,19 @@
 """The memory of one servo's control table: factory values, indirect cells, reads and writes."""
 
-from drivers.dynamixel.control_table import BAUD_CODES, EEPROM_END, TABLE_SIZE, Register
+from drivers.dynamixel.control_table import (
+    BAUD_CODES,
+    EEPROM_END,
+    TABLE_SIZE,
+    OperatingMode,
+    Register,
+)
 from drivers.dynamixel.servo_models import ServoModel
 
 FIRMWARE = 48
 """Firmware Version of emulated servos: has bus watchdog and fast reads (assumed)."""
+_MEASURED, _MEASURED_END = Register.REALTIME_TICK.address, Register.PRESENT_TEMPERATURE.end
+EXTENDED_POSITION = 1_048_575
+"""Largest Goal Position outside the position mode (256 turns)."""
 _CONTROL = (
     Register.POSITION_P_GAIN,
     Register.POSITION_I_GAIN,
@@ -25,6 +34,8 @@ class RegisterFile:
     def __init__(self, model: ServoModel, servo_id: int, baud: int) -> None:
         """A servo set up for a robot: its id and baud, no return delay, else as from factory."""
         self.model = model
+        self.goal_bounds = (0, 0)
+        """Least and greatest Goal Position of the operating mode; see `adopt_mode`."""
         self.memory = bytearray(TABLE_SIZE)
         self._places = {
             cells.data + i: cells.address + 2 * i
@@ -42,7 +53,7 @@ class RegisterFile:
 
     def __getitem__(self, register: Register) -> int:
         row = register.spec
-        return row.decode(self.memory[row.address : row.address + row.size])
+        return row.decode(bytes(self.memory[row.address : row.address + row.size]))
 
     def __setitem__(self, register: Register, value: int) -> None:
         row = register.spec
@@ -64,6 +75,14 @@ class RegisterFile:
         self.reset_goals()
         for data, place in self._places.items():
             self.memory[place : place + 2] = data.to_bytes(2, "little")
+
+    def adopt_mode(self) -> None:
+        """Bring `goal_bounds` up to date with operating mode and position limits."""
+        if self[Register.OPERATING_MODE] == OperatingMode.POSITION:
+            low, high = self[Register.MIN_POSITION_LIMIT], self[Register.MAX_POSITION_LIMIT]
+            self.goal_bounds = (low, high)
+        else:
+            self.goal_bounds = (-EXTENDED_POSITION, EXTENDED_POSITION)
 
     def reset_control(self) -> None:
         """What a change of the operating mode sets back."""
@@ -97,10 +116,7 @@ class RegisterFile:
     def reaches_present(self, address: int, length: int) -> bool:
         """Whether a read may touch measured values, directly or through indirect data."""
         end = address + length
-        measured = Register.REALTIME_TICK.address
-        return end > self._first_data or (
-            end > measured and address < Register.PRESENT_TEMPERATURE.end
-        )
+        return end > self._first_data or (end > _MEASURED and address < _MEASURED_END)
 
     def split_indirect(self, address: int, data: bytes) -> list[tuple[int, bytes]] | None:
         """A write's runs of real addresses; None when it has no indirect data bytes."""

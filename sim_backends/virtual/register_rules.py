@@ -12,15 +12,11 @@ from typing import Protocol
 from drivers.dynamixel.control_table import (
     BAUD_CODES,
     Access,
-    OperatingMode,
     Register,
     RegisterSpec,
 )
 from drivers.dynamixel.protocol import StatusError
 from drivers.dynamixel.servo_models import SERVO_MODELS, ServoModel
-
-EXTENDED_POSITION = 1_048_575
-"""Largest Goal Position outside the position mode (256 turns)."""
 
 Rows = tuple[RegisterSpec, ...]
 
@@ -29,6 +25,7 @@ class Table(Protocol):
     """A control table as the rules see it."""
 
     model: ServoModel
+    goal_bounds: tuple[int, int]
 
     def __getitem__(self, register: Register) -> int:
         """Value of a register."""
@@ -100,10 +97,7 @@ def _limited_by(limit: Register) -> Rule:
 
 
 def _goal_position(table: Table, value: int) -> StatusError:
-    if table[Register.OPERATING_MODE] == OperatingMode.POSITION:
-        low, high = table[Register.MIN_POSITION_LIMIT], table[Register.MAX_POSITION_LIMIT]
-    else:
-        low, high = -EXTENDED_POSITION, EXTENDED_POSITION
+    low, high = table.goal_bounds
     return StatusError.NONE if low <= value <= high else StatusError.DATA_LIMIT
 
 

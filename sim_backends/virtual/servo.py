@@ -1,5 +1,6 @@
 """One emulated Dynamixel: what its firmware does with instructions, and with its motor."""
 
+import struct
 from collections.abc import Callable
 
 from drivers.dynamixel.control_table import (
@@ -27,6 +28,8 @@ _CLEAR_POSITION = b"\x01\x44\x58\x4c\x22"
 _TORQUE = Register.TORQUE_ENABLE.address
 _ERROR = Register.HARDWARE_ERROR_STATUS.address
 _WATCHDOG = Register.BUS_WATCHDOG.address
+_GOAL_ADDRESS = Register.GOAL_POSITION.address
+_GOAL_POSITION = struct.Struct("<i")
 _PRESENT = Register.REALTIME_TICK.address
 _GOALS, _GOALS_END = Register.GOAL_PWM.address, Register.GOAL_POSITION.end
 
@@ -145,9 +148,7 @@ class EmulatedServo:
 
     def clear(self, params: bytes) -> int:
         """Clear the turns of the position, of which a joint has none; the error byte."""
-        return self.error(
-            StatusError.NONE if params == _CLEAR_POSITION else StatusError.DATA_RANGE
-        )
+        return self.error(StatusError.NONE if params == _CLEAR_POSITION else StatusError.DATA_RANGE)
 
     # Writing ---------------------------------------------------------------------------------
 
@@ -187,6 +188,7 @@ class EmulatedServo:
 
     def _adopt_settings(self) -> None:
         registers = self.registers
+        registers.adopt_mode()
         self.id, self.baud_code = registers[Register.ID], registers[Register.BAUD_RATE]
         self.return_delay = registers[Register.RETURN_DELAY_TIME]
         self.status_level = registers[Register.STATUS_RETURN_LEVEL]
@@ -194,8 +196,11 @@ class EmulatedServo:
         offset = registers[Register.HOMING_OFFSET]
         ignored = mode == OperatingMode.POSITION and abs(offset) > _SINGLE_TURN_OFFSET
         self._offset = CENTRE_COUNTS + (0 if ignored else offset)
-        self._sign = -1 if registers[Register.DRIVE_MODE] & DriveMode.REVERSE else 1
+        drive_mode = registers[Register.DRIVE_MODE]
+        self._sign = -1 if drive_mode & DriveMode.REVERSE else 1
         self._drives = mode in _POSITION_MODES
+        self._torque_on_by_goal = drive_mode & DriveMode.TORQUE_ON_BY_GOAL_UPDATE
+        self._threshold = registers[Register.MOVING_THRESHOLD]
         self._hottest = registers[Register.TEMPERATURE_LIMIT]
         self._lowest = registers[Register.MIN_VOLTAGE_LIMIT]
         self._highest = registers[Register.MAX_VOLTAGE_LIMIT]
@@ -224,14 +229,13 @@ class EmulatedServo:
 
     def _new_goal(self) -> None:
         self._adopt_goal()
-        by_goal = self.registers[Register.DRIVE_MODE] & DriveMode.TORQUE_ON_BY_GOAL_UPDATE
-        if by_goal and not self._memory[_TORQUE]:
+        if self._torque_on_by_goal and not self._memory[_TORQUE]:
             self._memory[_TORQUE] = 1
             self._switch_torque()
 
     def _adopt_goal(self) -> None:
-        goal = self.registers[Register.GOAL_POSITION]
-        self._motor.set_goal(self._sign * (goal - self._offset) + CENTRE_COUNTS)
+        (self._goal,) = _GOAL_POSITION.unpack_from(self._memory, _GOAL_ADDRESS)
+        self._motor.set_goal(self._sign * (self._goal - self._offset) + CENTRE_COUNTS)
 
     # Bus watchdog ----------------------------------------------------------------------------
 
@@ -260,11 +264,10 @@ class EmulatedServo:
         memory, sign = self._memory, self._sign
         tick = (self._now_ns() - self._booted_ns) // 1_000_000 % REALTIME_TICK_MODULUS
         velocity = sign * reading.velocity
-        moving = abs(velocity) > memory[Register.MOVING_THRESHOLD.address]
-        goal = self.registers[Register.GOAL_POSITION]
+        moving = abs(velocity) > self._threshold
         PRESENT.pack_into(
             memory, _PRESENT, tick, moving, 0, sign * reading.pwm, sign * reading.current,
-            velocity, self._shown(reading), 0, goal, reading.voltage, reading.temperature,
+            velocity, self._shown(reading), 0, self._goal, reading.voltage, reading.temperature,
         )  # fmt: skip
         if reading.temperature > self._hottest:
             self._raise(HardwareError.OVERHEATING)

@@ -1,0 +1,142 @@
+"""Foot and IMU boards: sampling on the physics grid, raw counts, frames on a serial line."""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from drivers.boards.frames import (
+    ACCELERATION_UNIT,
+    GYRO_UNIT,
+    ORIENTATION_UNIT,
+    ImuStatus,
+    encode_foot_frame,
+    encode_imu_frame,
+)
+from hil.description import Board, RobotDescription
+from hil.interface import Floats
+from sim_backends.latency import BITS_PER_BYTE
+from sim_backends.plant import Plant
+from sim_backends.sensor_models import CellErrors, ImuErrors
+from sim_backends.virtual.clock import VirtualClock
+from sim_backends.virtual.host_port import HostPort
+
+CELL_ZERO = 1e5
+"""Standard deviation of a cell's counts without load (assumed)."""
+CELL_GAIN = 2000.0
+"""Typical counts of one newton (assumed)."""
+CLOCK_ERROR = 50e-6
+"""Largest error of a board's crystal (assumed)."""
+_ALL_CELLS = 0xF
+_INT16 = 32767
+
+FrameMaker = Callable[[int, int], bytes]
+"""Samples the plant: from sequence number and device time [µs] to a frame."""
+
+
+class SensorBoard:
+    """One board: samples on every k-th grid point, k so that the rate is nearest to its own.
+
+    Its clock has an offset and a drift of its own. A frame leaves `hold_ns` plus jitter after the
+    sample, and is in the host after its bytes at the board's baud and one USB transfer.
+    """
+
+    def __init__(
+        self,
+        description: RobotDescription,
+        board: Board,
+        clock: VirtualClock,
+        random: np.random.Generator,
+        port: HostPort,
+        make_frame: FrameMaker,
+        hold_ns: int,
+    ) -> None:
+        plant = clock.plant
+        grid_hz = plant.rate_hz * plant.substeps
+        self._stride = max(1, round(grid_hz / board.rate_hz))
+        self._plant, self._clock, self._random, self._port = plant, clock, random, port
+        self._make_frame = make_frame
+        self._sequence = int(random.integers(1 << 16))
+        self._offset_us = int(random.integers(1 << 32))
+        self._microseconds = 1e-3 * (1 + random.uniform(-CLOCK_ERROR, CLOCK_ERROR))
+        self._baud = board.baud
+        self._hold_ns = hold_ns + 1000 * description.timing.usb_transfer_us
+        self._jitter_ns = 1000 * (
+            description.noise.board_jitter_us + description.noise.usb_jitter_us
+        )
+        self._last_arrival_ns = 0
+        self._index = plant.substep_index + int(random.integers(self._stride))
+        clock.schedule(plant.grid_time_ns(self._index), self._sample)
+
+    def host_wrote(self, data: bytes, baud: int) -> None:
+        """Boards only talk."""
+
+    def _sample(self) -> None:
+        now_ns = self._plant.grid_time_ns(self._index)
+        device_us = int(now_ns * self._microseconds) + self._offset_us
+        frame = self._make_frame(self._sequence, device_us)
+        self._sequence += 1
+        wire_ns = len(frame) * BITS_PER_BYTE * 1_000_000_000 // self._baud
+        jitter_ns = int(self._random.random() * self._jitter_ns)
+        arrival_ns = max(now_ns + self._hold_ns + wire_ns + jitter_ns, self._last_arrival_ns)
+        self._last_arrival_ns = arrival_ns
+        self._port.deliver_at(arrival_ns, frame)
+        self._index += self._stride
+        self._clock.schedule(self._plant.grid_time_ns(self._index), self._sample)
+
+
+class LoadCells:
+    """Four cells of one foot: counts = zero + force/scale, zero and scale drawn once a robot.
+
+    Signs and sizes of the scales vary as those of real bridges do, so nothing works uncalibrated.
+    """
+
+    def __init__(
+        self, plant: Plant, foot: int, errors: CellErrors, random: np.random.Generator
+    ) -> None:
+        """`foot`: 0 left, 1 right."""
+        self._plant = plant
+        self._foot = foot
+        self._errors = errors
+        gain = CELL_GAIN * random.uniform(0.7, 1.3, 4) * random.choice((-1.0, 1.0), 4)
+        self._gain = gain
+        self._zero = np.rint(random.normal(0.0, CELL_ZERO, 4))
+
+    def frame(self, sequence: int, device_us: int) -> bytes:
+        """A frame of the loads now."""
+        force = self._errors.measure(self._plant.foot_force()[self._foot])
+        counts = np.rint(self._zero + self._gain * force).astype(int).tolist()
+        return encode_foot_frame(sequence, device_us, _ALL_CELLS, counts)
+
+    def calibration(self) -> dict[str, list[float]]:
+        """What calibrating found: exact scales, and zeros off by `noise.corner_zero`."""
+        zero = self._zero - self._gain * self._errors.zero
+        return {"zero": zero.tolist(), "scale": (1.0 / self._gain).tolist()}
+
+
+class InertialUnit:
+    """The IMU in raw registers, in base axes."""
+
+    def __init__(self, plant: Plant, errors: ImuErrors) -> None:
+        self._plant = plant
+        self._errors = errors
+
+    def frame(self, sequence: int, device_us: int) -> bytes:
+        """A frame of the motion now."""
+        plant = self._plant
+        orientation, gyro, force = self._errors.measure(
+            plant.orientation, plant.angular_velocity, plant.specific_force()
+        )
+        return encode_imu_frame(
+            sequence,
+            device_us,
+            ImuStatus.ALL,
+            _raw(orientation, ORIENTATION_UNIT),
+            _raw(gyro, GYRO_UNIT),
+            _raw(force, ACCELERATION_UNIT),
+        )
+
+
+def _raw(values: Floats, unit: float) -> list[int]:
+    """Register counts, saturated to 16 bits."""
+    return [max(-_INT16, min(_INT16, math.floor(v / unit + 0.5))) for v in values.tolist()]
