@@ -14,7 +14,7 @@ import numpy as np
 from dynamixel_sdk import GroupSyncRead, GroupSyncWrite, PortHandler, Protocol2PacketHandler
 
 from drivers.dynamixel.budget import BusTiming
-from drivers.dynamixel.bus import POLL_EVERY, BusServo, ServoBus
+from drivers.dynamixel.bus import POLL_EVERY, ServoBus
 from drivers.dynamixel.protocol import (
     FastBlock,
     Instruction,
@@ -22,7 +22,7 @@ from drivers.dynamixel.protocol import (
     encode_fast_status,
     encode_status,
 )
-from drivers.dynamixel.read_plan import HOT
+from drivers.dynamixel.read_plan import HOT, BusServo
 from drivers.dynamixel.states import ServoStates
 from hil.servo import ServoGoals
 

@@ -11,10 +11,8 @@ DURATION_S = 5.0
 def main() -> None:
     for case in CASES:
         for row in measure(case, DURATION_S)[1:]:
-            print(
-                f"{row.group:24s}{row.name:30s}{row.value:8.3f} {row.unit}   held to {row.held_to:g}: "
-                f"{row.ratio:.2f}"
-            )
+            figure = f"{row.value:8.3f} {row.unit}, held to {row.held_to:g}: {row.ratio:.2f}"
+            print(f"{row.group:24s}{row.name:30s}{figure}")
 
 
 if __name__ == "__main__":

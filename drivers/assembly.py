@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from drivers.boards.calibration import FootConverter, ImuConverter
 from drivers.boards.frames import FRAME_SIZE, KIND_FOOT, KIND_IMU
 from drivers.boards.reader import BoardReader
@@ -11,10 +13,12 @@ from drivers.calibration import RobotCalibration
 from drivers.dynamixel.audit import AuditResult, ExpectedServo, audit_bus
 from drivers.dynamixel.budget import BusBudget, BusTiming, bus_budget, wire_time_ns
 from drivers.dynamixel.client import ServoClient
+from drivers.dynamixel.control_table import VOLTAGE_UNIT, Register
 from drivers.dynamixel.group_access import GroupAccess
 from drivers.dynamixel.port import Port
 from drivers.dynamixel.power import BusPower
 from drivers.dynamixel.servo_models import find_servo_model
+from drivers.dynamixel.states import ServoStates
 from hil.description import RobotDescription
 from hil.errors import InputError
 from hil.interface import Clock
@@ -37,6 +41,15 @@ class BusParts:
     def audit(self) -> AuditResult:
         """Check and correct the servos."""
         return audit_bus(self.name, self.client, self.group, self.servos)
+
+    def read_slow(self, states: ServoStates) -> None:
+        """Read all voltages and temperatures, so that the first tick knows them."""
+        ids = [servo.id for servo in self.servos]
+        voltages = self.group.read(Register.PRESENT_INPUT_VOLTAGE, ids)
+        temperatures = self.group.read(Register.PRESENT_TEMPERATURE, ids)
+        for servo_id, joint in zip(ids, self.joints, strict=True):
+            states.voltage[joint] = VOLTAGE_UNIT * voltages.get(servo_id, np.nan)
+            states.temperature[joint] = temperatures.get(servo_id, np.nan)
 
 
 def bus_timing(description: RobotDescription, bus: str) -> BusTiming:

@@ -14,15 +14,16 @@ from drivers.assembly import (
 )
 from drivers.boards.sensors import BoardSensors
 from drivers.calibration import RobotCalibration
+from drivers.command_check import require_sound
 from drivers.dynamixel.budget import wire_time_ns
-from drivers.dynamixel.bus import BusServo, ServoBus
+from drivers.dynamixel.bus import LEAST_MARGIN_NS, ServoBus
 from drivers.dynamixel.bus_group import BusGroup
-from drivers.dynamixel.control_table import VOLTAGE_UNIT, Register
 from drivers.dynamixel.port import Port
+from drivers.dynamixel.read_plan import BusServo
 from drivers.dynamixel.states import ServoStates
 from drivers.joint_converter import JointConverter
 from hil.description import RobotDescription
-from hil.errors import BackendError, InvalidCommandError
+from hil.errors import BackendError
 from hil.interface import (
     AppliedCommand,
     Clock,
@@ -32,6 +33,9 @@ from hil.interface import (
     StopMode,
 )
 from hil.servo import ServoGoals, ServoMapping
+
+REFRESH_ATTEMPTS = 5
+"""Reads after arming until every servo answers; a servo that does not is the loop's to judge."""
 
 
 class BusBackend:
@@ -96,7 +100,8 @@ class BusBackend:
         self._traffic = {part.name: self._bytes_of(part.port) for part in self._parts}
 
     def read(self) -> SensorFrame:
-        """The frame of this tick. The returned object is reused by the next call."""
+        """The frame of this tick, reused by the next call. Raises BackendError."""
+        self._require_open()
         frame = self._frame
         frame.time_ns = self.clock.now_ns()
         self._states.valid[:] = False
@@ -110,6 +115,7 @@ class BusBackend:
 
     def arm(self) -> None:
         """Adopt the present position as goal, then enable torque. Raises BackendError."""
+        self._require_open()
         goals = self._present_goals()
         self._powered = True
         try:
@@ -122,6 +128,7 @@ class BusBackend:
                 part.power.on()
             for part in self._parts:
                 part.power.arm_watchdog()
+            self._refresh()
         except BaseException:
             self.stop(StopMode.TORQUE_OFF)
             raise
@@ -131,8 +138,8 @@ class BusBackend:
         self._armed = True
 
     def write(self, command: JointCommand) -> AppliedCommand:
-        """Send a command; raises InvalidCommandError and sends nothing if it is not finite."""
-        self._check(command)
+        """Send a command; raises InvalidCommandError and sends nothing if it is not sound."""
+        require_sound(command, self._description.joint_names)
         goals, applied = self._mapping.map(command, self._frame)
         if not self._armed:
             applied.limit |= int(Limit.HELD)
@@ -159,9 +166,11 @@ class BusBackend:
 
     def close(self) -> None:
         """Torque off if `arm` switched it on, then release the ports. Safe to call twice."""
-        if self._powered:
-            self.stop(StopMode.TORQUE_OFF)
-        self._close_ports()
+        try:
+            if self._powered:
+                self.stop(StopMode.TORQUE_OFF)
+        finally:
+            self._close_ports()
 
     def statistics(self) -> dict[str, float | None]:
         """Counters for the report."""
@@ -176,6 +185,10 @@ class BusBackend:
             "voltage_min_v": _known(np.fmin.reduce(self._lowest_voltage)),
             "duty_saturation_pct_max": _known(saturated_pct),
         }
+
+    def _require_open(self) -> None:
+        if not self._parts:
+            raise BackendError(f"{self._description.name}: the bus backend is not open")
 
     def _open_ports(self) -> None:
         description = self._description
@@ -197,11 +210,13 @@ class BusBackend:
             raise BackendError("; ".join(problems))
         self.changes = [change for result in results.values() for change in result.changes]
         fast = {name: result.fast_reads for name, result in results.items()}
+        margins = {}
         for budget in bus_budgets(self._description, fast):
             budget.check(self._rate_hz)
+            margins[budget.bus] = max(LEAST_MARGIN_NS, budget.slack_ns(self._rate_hz))
         buses = []
         for part in self._parts:
-            self._read_slow(part)
+            part.read_slow(self._states)
             servos = [
                 BusServo(servo.id, joint)
                 for servo, joint in zip(part.servos, part.joints, strict=True)
@@ -210,15 +225,6 @@ class BusBackend:
                 ServoBus(part.name, part.port, part.timing, servos, self._states, fast[part.name])
             )
         self._group = BusGroup(buses, self.clock)
-
-    def _read_slow(self, part: BusParts) -> None:
-        """Voltages and temperatures, so that the first tick knows them."""
-        ids = [servo.id for servo in part.servos]
-        joint_of = dict(zip(ids, part.joints, strict=True))
-        for servo_id, value in part.group.read(Register.PRESENT_INPUT_VOLTAGE, ids).items():
-            self._states.voltage[joint_of[servo_id]] = VOLTAGE_UNIT * value
-        for servo_id, value in part.group.read(Register.PRESENT_TEMPERATURE, ids).items():
-            self._states.temperature[joint_of[servo_id]] = value
 
     def _present_goals(self) -> ServoGoals:
         """Goals at the present positions with the robot's default gains."""
@@ -236,20 +242,14 @@ class BusBackend:
         goals.position[:] = counts
         return goals
 
-    def _check(self, command: JointCommand) -> None:
-        names = ("position", "velocity", "stiffness", "damping", "torque")
-        shapes_fit = all(getattr(command, name).shape == (self._n,) for name in names)
-        if shapes_fit and command.is_finite():
-            return
-        for name in names:
-            values = getattr(command, name)
-            if values.shape != (self._n,):
-                raise InvalidCommandError(
-                    f"command {name} has shape {values.shape}, the robot has {self._n} joints"
-                )
-            for joint, value in zip(self._description.joint_names, values, strict=True):
-                if not np.isfinite(value):
-                    raise InvalidCommandError(f"joint {joint}: commanded {name} is {value}")
+    def _refresh(self) -> None:
+        """Read until every servo was heard: arming took many ticks, and ages count from here."""
+        for _ in range(REFRESH_ATTEMPTS):
+            self._states.valid[:] = False
+            self._group.send_reads()
+            self._group.receive()
+            if self._states.valid.all():
+                return
 
     def _stop_bus(self, part: BusParts, mode: StopMode) -> bool:
         """Stop one bus; a bus that is lost must not keep the others from stopping."""
@@ -274,8 +274,8 @@ class BusBackend:
         return port.sent_bytes + port.received_bytes
 
     def _utilisation_pct(self) -> float | None:
-        """Share of time since `open` in which the busiest bus carried bytes."""
-        elapsed_ns = self.clock.now_ns() - self._opened_ns
+        """Share of time from `open` to the last tick in which the busiest bus carried bytes."""
+        elapsed_ns = self._frame.time_ns - self._opened_ns
         if not self._group.buses or elapsed_ns <= 0:
             return None
         busy_ns = max(

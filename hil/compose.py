@@ -13,10 +13,11 @@ from drivers.calibration import RobotCalibration, load_calibration
 from drivers.dynamixel.gain_mapping import GainMapping
 from drivers.robot_backend import BusBackend
 from hil.clock import MonotonicClock
-from hil.description import RobotDescription, load_robot
+from hil.description import RobotDescription
 from hil.errors import DescriptionError, InputError
 from hil.interface import Controller, Estimator, World
 from hil.request import RunRequest
+from hil.robot_files import load_robot
 from hil.session import Session
 from hil.validation import validate
 from sim_backends.mujoco_backend import MujocoBackend
@@ -46,9 +47,7 @@ def serve_virtual(
     description = load_robot(robot, overrides)
     if not description.buses:
         raise InputError(f"{description.name} has no servo bus to emulate")
-    run_server(
-        description, rate_hz or description.defaults.rate_hz, seed, as_json, stdin_is_pipe()
-    )
+    run_server(description, rate_hz or description.defaults.rate_hz, seed, as_json, stdin_is_pipe())
 
 
 def _on_mujoco(request: RunRequest, description: RobotDescription) -> Session:
@@ -76,9 +75,7 @@ def _in_lockstep(request: RunRequest, description: RobotDescription) -> Session:
     robot.start()
     calibration = _ideal_calibration(description, robot.calibration_data)
     mapping = GainMapping(description, calibration)
-    backend = BusBackend(
-        description, robot.clock, rate_hz, robot.port_urls, calibration, mapping
-    )
+    backend = BusBackend(description, robot.clock, rate_hz, robot.port_urls, calibration, mapping)
     return _session(request, description, backend, plant, closers=(robot.close,))
 
 
@@ -116,9 +113,7 @@ def _on_real_bus(request: RunRequest, description: RobotDescription) -> Session:
     calibration = load_calibration(Path(description.file).parent / description.calibration)
     mapping = GainMapping(description, calibration)
     urls = {key.partition(".")[2]: port for key, port in ports.items() if port is not None}
-    backend = BusBackend(
-        description, MonotonicClock(), _rate(request), urls, calibration, mapping
-    )
+    backend = BusBackend(description, MonotonicClock(), _rate(request), urls, calibration, mapping)
     return _session(request, description, backend, None)
 
 
@@ -163,9 +158,7 @@ def _initial_speed(request: RunRequest, description: RobotDescription) -> float:
     return next(at_start, description.defaults.speed)
 
 
-def _ideal_calibration(
-    description: RobotDescription, data: Mapping[str, Any]
-) -> RobotCalibration:
+def _ideal_calibration(description: RobotDescription, data: Mapping[str, Any]) -> RobotCalibration:
     """What a virtual robot's calibration would find, but for the errors that its seed draws."""
     provenance = {"date": datetime.now(UTC).date().isoformat(), "method": "ideal"}
     content = {"robot": description.name, "provenance": provenance, **data}

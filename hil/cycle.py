@@ -57,7 +57,7 @@ class Cycle:
     def __init__(self, session: Session, rate_hz: int, sinks: tuple[Sink, ...]) -> None:
         description, n = session.description, len(session.description.joints)
         self.rate_hz = rate_hz
-        self.supervisor = Supervisor(description, rate_hz)
+        self.supervisor = Supervisor(description)
         self.schedule = TickSchedule(session.backend.clock, rate_hz)
         self._session = session
         self._sinks = sinks

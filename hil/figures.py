@@ -133,7 +133,7 @@ def draw_corners(axes: Axes, trace: Trace, foot: int, weight_n: float) -> None:
     side = ("Left", "Right")[foot]
     axes.set(title=f"{side} foot: corner forces", xlabel="time [s]", ylabel="[N]")
     axes.margins(x=0)
-    axes.set_ylim(0, 1.15 * float(trace.foot_force.sum(axis=2)[window].max(initial=1.0)))
+    axes.set_ylim(0, 1.15 * float(trace.foot_force.sum(axis=2)[window].max(initial=weight_n)))
     axes.legend(loc="upper right", ncols=5, fontsize=7, handlelength=1.2, columnspacing=0.9)
 
 

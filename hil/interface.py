@@ -103,7 +103,9 @@ class AppliedCommand:
     @classmethod
     def zeros(cls, n: int) -> "AppliedCommand":
         """An applied command of n joints with nothing sent."""
-        return cls(*(np.zeros(n) for _ in range(5)), np.zeros(n, dtype=np.int64))
+        position, velocity, stiffness, damping, torque = np.zeros((5, n))
+        limit = np.zeros(n, dtype=np.int64)
+        return cls(position, velocity, stiffness, damping, torque, limit)
 
 
 @dataclass(slots=True)
@@ -334,8 +336,15 @@ class World(Protocol):
 class Backend(Protocol):
     """Actuators and sensors of one robot, simulated or real."""
 
-    name: str
-    clock: Clock
+    @property
+    def name(self) -> str:
+        """Of the backend, as the command line names it."""
+        ...
+
+    @property
+    def clock(self) -> Clock:
+        """The time on which this backend lives."""
+        ...
 
     def open(self) -> None:
         """Connect and check; torque stays as it is found. Raises BackendError or InputError."""

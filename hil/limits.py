@@ -8,7 +8,6 @@ from hil.description import RobotDescription
 from hil.errors import InvalidCommandError
 from hil.interface import Ints, JointCommand, Limit
 
-
 FLAGS: Ints = np.array(
     [Limit.POSITION, Limit.VELOCITY, Limit.STIFFNESS, Limit.DAMPING, Limit.TORQUE], dtype=np.int64
 )
@@ -47,7 +46,7 @@ class JointLimits:
         asked[0], asked[1], asked[2] = command.position, command.velocity, command.stiffness
         asked[3], asked[4] = command.damping, command.torque
         if not np.isfinite(asked).all():
-            raise InvalidCommandError(self._complaint(command))
+            raise InvalidCommandError(self._complaint())
         np.minimum(np.maximum(asked, self._low, out=clamped), self._high, out=clamped)
         changed = clamped != asked
         if changed.any():
@@ -57,11 +56,7 @@ class JointLimits:
             self.flags[:] = 0
         return self._out
 
-    def _complaint(self, command: JointCommand) -> str:
-        for field in fields(command):
-            values = getattr(command, field.name)
-            bad = np.flatnonzero(~np.isfinite(values))
-            if bad.size:
-                joint = self._names[bad[0]]
-                return f"command: {field.name} of joint {joint} is {values[bad[0]]}, not finite"
-        raise ValueError("the command is finite")
+    def _complaint(self) -> str:
+        row, joint = np.argwhere(~np.isfinite(self._asked))[0]
+        field = fields(JointCommand)[row].name
+        return f"command: {field} of {self._names[joint]} is {self._asked[row, joint]}, not finite"

@@ -20,9 +20,7 @@ class TickFile:
 
     def __init__(self, path: Path, dtype: np.dtype[np.void], meta: dict[str, Any]) -> None:
         self._stream = path.open("wb")
-        self._writer = Writer(
-            self._stream, chunk_size=CHUNK_BYTES, compression=CompressionType.ZSTD
-        )
+        self._writer = Writer(self._stream, chunk_size=CHUNK_BYTES, compression=CompressionType.LZ4)
         self._writer.start(profile="ros2", library=f"stridebridge {__version__}")
         self._writer.add_metadata(METADATA, {"meta": json.dumps(meta)})
         self._channels = {
@@ -34,15 +32,16 @@ class TickFile:
         self.flush()
 
     def write(self, rows: np.ndarray[Any, np.dtype[np.void]]) -> None:
-        """Append ticks."""
-        times = rows["time_ns"].tolist()
-        for topic, channel in self._channels.items():
-            column = rows[topic]
-            data, size = column.tobytes(), column.dtype.itemsize
-            for index, time_ns in enumerate(times):
+        """Append ticks, one after the other, so that a chunk holds whole ticks."""
+        parts = [
+            (channel, rows[topic].dtype.itemsize, rows[topic].tobytes())
+            for topic, channel in self._channels.items()
+        ]
+        for index, time_ns in enumerate(rows["time_ns"].tolist()):
+            for channel, size, data in parts:
                 body = CDR_HEADER + data[index * size : (index + 1) * size]
-                self._writer.add_message(channel, time_ns, body, time_ns, self._sequence + index)
-        self._sequence += len(times)
+                self._writer.add_message(channel, time_ns, body, time_ns, self._sequence)
+            self._sequence += 1
 
     def flush(self) -> None:
         """Give finished chunks to the operating system."""

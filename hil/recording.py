@@ -1,7 +1,9 @@
 """Reading a run folder back: its meta data, and every tick that reached the disk."""
 
 import json
+import struct
 from dataclasses import dataclass
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -9,11 +11,14 @@ import numpy as np
 from mcap.exceptions import McapError
 from mcap.records import Channel, Message, Metadata, Schema
 from mcap.stream_reader import StreamReader
+from mcap.writer import MCAP0_MAGIC
 
 from hil.errors import InputError
 from hil.record_layout import CDR_HEADER, parse_definition
 from hil.recorder_file import METADATA
 from hil.trace import Trace
+
+RECORD_HEADER = struct.Struct("<BQ")
 
 Rows = np.ndarray[Any, np.dtype[np.void]]
 
@@ -41,7 +46,7 @@ def read_recording(folder: Path) -> Recording:
         raise InputError(f"{folder}: not a run folder: it has no session.mcap")
     contents = _Contents()
     complete = contents.read(path)
-    if contents.meta is None:
+    if contents.meta is None or not contents.topics:
         raise InputError(f"{path}: no recording of ours, or cut off before its first tick")
     return Recording(contents.meta, _rows(contents), complete)
 
@@ -57,13 +62,13 @@ class _Contents:
         self.times: dict[str, list[int]] = {}
 
     def read(self, path: Path) -> bool:
-        """Take every record; False if the file ends in the middle of one."""
-        with path.open("rb") as stream:
-            try:
-                for record in StreamReader(stream).records:
-                    self._take(record)
-            except (McapError, ValueError, EOFError):
-                return False
+        """Take every record; False if the file is cut off or damaged, then up to there."""
+        whole = _whole_records(path.read_bytes())
+        try:
+            for record in StreamReader(BytesIO(whole), validate_crcs=True).records:
+                self._take(record)
+        except (McapError, ValueError, RuntimeError, struct.error):
+            return False
         return True
 
     def _take(self, record: Any) -> None:
@@ -80,6 +85,17 @@ class _Contents:
             self.times.setdefault(topic, [])
         elif isinstance(record, Metadata) and record.name == METADATA:
             self.meta = json.loads(record.metadata["meta"])
+
+
+def _whole_records(data: bytes) -> bytes:
+    """The file up to its last whole record: an opcode, a length of eight bytes, the content."""
+    end = len(MCAP0_MAGIC)
+    while end + RECORD_HEADER.size <= len(data):
+        _, length = RECORD_HEADER.unpack_from(data, end)
+        if end + RECORD_HEADER.size + length > len(data):
+            return data[:end]
+        end += RECORD_HEADER.size + length
+    return data
 
 
 def _rows(contents: _Contents) -> Rows:

@@ -9,18 +9,16 @@ from hil.loop import Outcome
 from hil.request import RunRequest
 from hil.trace import Trace
 
-BACKEND_KEYS = (
+COUNTER_KEYS = ("bus_crc_errors", "bus_timeouts", "bus_stale_frames")
+FIGURE_KEYS = (
     "bus_utilisation_pct",
-    "bus_crc_errors",
-    "bus_timeouts",
-    "bus_stale_frames",
     "temperature_max_c",
     "torque_rms_ratio_max",
     "duty_saturation_pct_max",
     "voltage_min_v",
     "energy_wh",
 )
-"""Keys that a backend's statistics fill; None where it has nothing to say."""
+"""Keys that a backend's statistics fill, with the counters; None where it has nothing to say."""
 
 
 def make_report(
@@ -56,7 +54,8 @@ def make_report(
         "real_time_factor": outcome.clock_ns / outcome.wall_ns if outcome.wall_ns else None,
         "stabilizer_iterations_mean": float(iterations.mean()) if use else None,
         "stabilizer_limit_pct": float(100.0 * limited.mean()) if use else None,
-        **{key: _finite(statistics.get(key)) for key in BACKEND_KEYS},
+        **{key: _count(statistics.get(key)) for key in COUNTER_KEYS},
+        **{key: _finite(statistics.get(key)) for key in FIGURE_KEYS},
         "faults": [asdict(fault) for fault in outcome.faults],
     }
 
@@ -64,3 +63,7 @@ def make_report(
 def _finite(value: float | None) -> float | None:
     """NaN means unknown, which JSON writes as null."""
     return None if value is None or not math.isfinite(value) else value
+
+
+def _count(value: float | None) -> int | None:
+    return None if value is None else round(value)

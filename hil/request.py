@@ -59,7 +59,8 @@ class RunRequest(Config):
             problem = first["msg"].removeprefix("Value error, ")
             if not first["loc"]:
                 raise InputError(problem) from error
-            field = str(first["loc"][0])
+            names = [part for part in first["loc"] if isinstance(part, str)]
+            field = names[1] if names[0] == "schedules" and len(names) > 1 else names[0]
             option = OPTIONS.get(field, "--" + field.replace("_", "-"))
             raise InputError(f"{option}: {problem} (got {first['input']!r})") from error
 

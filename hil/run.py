@@ -39,9 +39,11 @@ def run(session: Session, *, progress: bool = True) -> RunResult:
     loop = Loop(session, books.sinks)
     try:
         loop.run()
-    finally:
-        report = books.close(loop.outcome)
-    return RunResult(books.folder, report)
+    except BaseException as error:
+        error.add_note(f"recorded in {books.folder}")
+        books.close(loop.outcome)
+        raise
+    return RunResult(books.folder, books.close(loop.outcome))
 
 
 class Books:

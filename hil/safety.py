@@ -3,15 +3,18 @@
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from hil.description import RobotDescription
-from hil.interface import NEVER_NS, Estimate, SensorFrame, Truth
+from hil.interface import NEVER_NS, Estimate, Ints, SensorFrame, Truth
 
 MAX_TILT_RAD = 1.0
 """Tilt of the root body beyond which it counts as fallen."""
 MIN_HEIGHT_SHARE = 0.6
 """Share of the starting height of the root body below which it counts as fallen."""
 MAX_MISSED_TICKS = 5
-"""A joint not heard of for longer has lost its servo (17 ms at 300 Hz; libfranka stops at 20)."""
+"""A joint not heard of in more ticks than this in a row has lost its servo (17 ms at 300 Hz;
+libfranka stops at 20 ms). Ticks are counted, not time: a pause of the program is no silence."""
 MAX_BOARD_AGE_NS = 50_000_000
 """A foot board or IMU that is silent for longer counts as lost."""
 
@@ -29,11 +32,11 @@ class Fault:
 class Supervisor:
     """Judges every tick. The first fault it finds ends the run: soft stop, then torque off."""
 
-    def __init__(self, description: RobotDescription, rate_hz: int) -> None:
+    def __init__(self, description: RobotDescription) -> None:
         self._names = description.joint_names
         self._boards = tuple(description.feet[side].board for side in ("left", "right"))
         self._min_up = math.cos(MAX_TILT_RAD)
-        self._max_joint_age_ns = MAX_MISSED_TICKS * 1_000_000_000 // rate_hz
+        self._missed: Ints = np.zeros(len(self._names), dtype=np.int64)
         self._min_height = -math.inf
 
     def begin_walking(self, base_height: float) -> None:
@@ -56,8 +59,10 @@ class Supervisor:
         return bool(up < self._min_up or motion.base_position[2] < self._min_height)
 
     def _lost(self, frame: SensorFrame) -> str | None:
-        worst = int(frame.joint_age_ns.argmax())
-        if frame.joint_age_ns[worst] > self._max_joint_age_ns:
+        self._missed += 1
+        self._missed[frame.joint_valid] = 0
+        worst = int(self._missed.argmax())
+        if self._missed[worst] > MAX_MISSED_TICKS:
             return self._names[worst]
         if frame.imu_present and frame.imu_age_ns > MAX_BOARD_AGE_NS:
             return "imu"

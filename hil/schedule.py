@@ -17,6 +17,9 @@ from hil.validation import Config
 Point = tuple[NonNegativeFloat, float]
 """Time [s] and value."""
 
+ROUNDING_S = 1e-9
+"""A tick at the end of a push is after it, however the sum of two times was rounded."""
+
 NUMBER = r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)"
 
 
@@ -69,7 +72,7 @@ class Operator:
         """Sum of the pushes that act at a time [N]. The array is reused by the next call."""
         self._force[:] = 0.0
         for push in self._pushes:
-            if push.start <= time_s < push.start + push.duration:
+            if -ROUNDING_S <= time_s - push.start < push.duration - ROUNDING_S:
                 self._force += push.force
         return self._force
 

@@ -25,6 +25,7 @@ def build_model(
     joints. Raises InputError when the MJCF cannot be read or lacks a part that is named.
     """
     spec = _read(description)
+    _require_parts(spec, description)
     for actuator in list(spec.actuators):
         spec.delete(actuator)
     if motors is not None:
@@ -42,6 +43,11 @@ def build_model(
     return model
 
 
+def substeps(description: RobotDescription, rate_hz: int) -> int:
+    """Physics substeps a tick: the robot's own number, or enough for 1100 Hz."""
+    return description.plant.substeps or substeps_per_tick(rate_hz)
+
+
 def named(model: mujoco.MjModel, kind: mujoco.mjtObj, name: str, file: object) -> int:
     """Id of a named part of the model; raises InputError that lists the names there are."""
     found = int(mujoco.mj_name2id(model, kind, name))
@@ -54,8 +60,26 @@ def named(model: mujoco.MjModel, kind: mujoco.mjtObj, name: str, file: object) -
         }
         names = [mujoco.mj_id2name(model, kind, i) for i in range(count[kind])]
         what = kind.name.removeprefix("mjOBJ_").lower()
-        raise InputError(f"{file}: no {what} {name!r}; there are: {', '.join(filter(None, names))}")
+        raise _missing(file, what, name, names)
     return found
+
+
+def _require_parts(spec: mujoco.MjSpec, description: RobotDescription) -> None:
+    """Check what the actuators and the support refer to, before the compiler trips over it."""
+    wanted = [
+        ("body", [description.root], spec.bodies),
+        ("joint", description.joint_names, spec.joints),
+        ("site", [description.imu.site] if description.imu is not None else [], spec.sites),
+    ]
+    for what, names, parts in wanted:
+        found = [part.name for part in parts]
+        for name in names:
+            if name not in found:
+                raise _missing(description.model_path, what, name, found)
+
+
+def _missing(file: object, what: str, name: str, found: list[str]) -> InputError:
+    return InputError(f"{file}: no {what} {name!r}; there are: {', '.join(filter(None, found))}")
 
 
 def foot_geoms(description: RobotDescription) -> list[str]:
@@ -111,7 +135,7 @@ def _add_support(spec: mujoco.MjSpec, root: str) -> None:
 
 def _configure(model: mujoco.MjModel, description: RobotDescription, rate_hz: int) -> None:
     option = model.opt
-    option.timestep = 1.0 / (rate_hz * substeps_per_tick(rate_hz))
+    option.timestep = 1.0 / (rate_hz * substeps(description, rate_hz))
     # MuJoCo 4.0.0 solves sparse Jacobians wrongly (mujoco issue 3767); robots here are small.
     option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
     # A diverged plant must be reported, not put back to its first pose.

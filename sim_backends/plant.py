@@ -3,13 +3,12 @@
 import mujoco
 import numpy as np
 
-from hil.clock import substeps_per_tick
 from hil.description import RobotDescription
 from hil.errors import BackendError, InputError
 from hil.interface import Floats, Ints, Truth
 from hil.servo import MotorParameters
 from sim_backends.foot_loads import FootLoads
-from sim_backends.model import ACCELEROMETER, SUPPORT, build_model, foot_geoms, named
+from sim_backends.model import ACCELEROMETER, SUPPORT, build_model, foot_geoms, named, substeps
 from sim_backends.servo_physics import ServoPhysics
 
 DIVERGED_SPEED = 1e5
@@ -41,7 +40,7 @@ class Plant:
             )
         self.description = description
         self.rate_hz = rate_hz
-        self.substeps = substeps_per_tick(rate_hz)
+        self.substeps = substeps(description, rate_hz)
         """Physics substeps a tick, N."""
         self.substep_index = 0
         self.model = build_model(description, rate_hz, motors)

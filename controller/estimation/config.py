@@ -10,9 +10,9 @@ class ContactConfig(Config):
 
     filter_time: float = Field(default=0.010, ge=0)
     """First-order filter of the corner forces [s]."""
-    on: PositiveFloat = 0.12
+    on: PositiveFloat = 0.30
     """Load that makes a contact, as a fraction of body weight."""
-    off: PositiveFloat = 0.05
+    off: PositiveFloat = 0.10
     """Load below which it ends, as a fraction of body weight."""
 
 
@@ -42,5 +42,5 @@ class EstimatorConfig(Config):
     """Time constant with which the gyro's integral is pulled to the IMU's orientation [s]."""
     imu_timeout: PositiveFloat = 0.030
     """An IMU silent for longer is replaced by the attitude of the flat stance foot [s]."""
-    trust_time: float = Field(default=0.02, ge=0)
+    trust_time: float = Field(default=0.015, ge=0)
     """A foot counts in the odometry when it has been on the ground for so long [s]."""

@@ -50,7 +50,11 @@ class SensorEstimator:
         model.set_state(estimate)
         contact = self._contact
         self._odometry.update(
-            model.corner_positions, self._corner_velocities(), contact.force, contact.contact
+            model.corner_positions,
+            model.data.cvel[model.foot_bodies],
+            model.com,
+            contact.force,
+            contact.contact,
         )
         self._trim.update(model.root_rotation, model.foot_rotations, contact.force)
         estimate.base_position[:] = self._odometry.position
@@ -79,21 +83,6 @@ class SensorEstimator:
     def _take_attitude(self, orientation: Floats) -> None:
         self.estimate.base_orientation[:] = orientation
         self.estimate.base_angular_velocity[:] = self._attitude.angular_velocity
-
-    def _corner_velocities(self) -> Floats:
-        """Velocities of the sole corners against the base origin [m/s], shape (2, 4, 3)."""
-        model = self._model
-        twist = model.data.cvel[model.foot_bodies]
-        lever = model.corner_positions - model.com
-        return twist[:, None, 3:] + _cross(twist[:, None, :3], lever)
-
-
-def _cross(first: Floats, second: Floats) -> Floats:
-    """Cross product along the last axis, without the checks that make numpy's slow."""
-    return (
-        first[..., [1, 2, 0]] * second[..., [2, 0, 1]]
-        - first[..., [2, 0, 1]] * second[..., [1, 2, 0]]
-    )
 
 
 def supply_voltage(frame: SensorFrame) -> float:

@@ -73,6 +73,11 @@ class LegPlanner:
 
     def solve(self) -> LegTargets:
         """Joint targets of both legs as they were set."""
-        before, now, after = self._geometry.solve(self._ankles, self._feet)
+        solve, feet = self._geometry.solve, self._feet.tolist()
+        angles = [
+            [solve(ankle, foot) for ankle, foot in zip(ankles, feet, strict=True)]
+            for ankles in self._ankles.tolist()
+        ]
+        before, now, after = np.array(angles)
         velocity = (after - before) / (2.0 * SPACING)
         return LegTargets(now, velocity, (after - 2.0 * now + before) / SPACING**2)

@@ -37,7 +37,7 @@ def hip_damping(config: RootBalanceConfig, relative_rate: Floats) -> Floats:
     """Stance-hip damping −c·|ω|·clip(ω, ±ω_max) [N·m], of the hip's relative rate ω [rad/s]."""
     limit = config.hip_damping_limit
     size = float(np.sqrt(relative_rate @ relative_rate))
-    torque: Floats = -config.hip_damping * size * np.minimum(
-        np.maximum(relative_rate, -limit), limit
+    torque: Floats = (
+        -config.hip_damping * size * np.minimum(np.maximum(relative_rate, -limit), limit)
     )
     return torque

@@ -3,7 +3,9 @@
 from pydantic import Field, PositiveFloat
 
 from controller.walking.alteration import AlterationConfig
+from controller.walking.command_ramp import CommandConfig
 from controller.walking.gait import GaitConfig
+from controller.walking.heading import HeadingConfig
 from hil.description import RobotDescription
 from hil.validation import Config, validate
 
@@ -97,10 +99,8 @@ class ServoWalkingConfig(Config):
     """Hip centres above the sole [m]."""
     latency: float = Field(ge=0)
     """From a tick to the moment its goals act [s]; targets are meant for half a tick after it."""
-    acceleration: PositiveFloat
-    """Rate at which the wanted speed follows the operator's [m/s²]."""
-    turn_rate: PositiveFloat
-    """Rate at which the heading follows the operator's [rad/s]."""
+    command: CommandConfig
+    heading: HeadingConfig
     yaw_limit: PositiveFloat
     """Largest angle between torso and a foot [rad]."""
     placement: PlacementConfig

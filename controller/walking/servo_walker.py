@@ -42,11 +42,9 @@ class ServoWalker:
         self._model = model = RobotModel(description)
         self._legs = _leg_joints(description)
         self._planner = LegPlanner(model, config.hip_height)
-        self._force = SupportForce(model, self._legs)
+        self._force = SupportForce(model)
         self._shift = WeightShift(config.weight_shift)
-        self._step = ServoStep(
-            config, model, self._planner.ankle_height, rate_hz, ankle_limit
-        )
+        self._step = ServoStep(config, model, rate_hz, ankle_limit)
         self._swing = SwingTrajectory(config.swing)
         self._command = JointCommand.zeros(len(description.joints))
         self._command.stiffness[:] = [joint.stiffness for joint in description.joints]
@@ -62,7 +60,9 @@ class ServoWalker:
         step = self._step
         step.update(estimate, reference)
         targets = self._walk(estimate)
-        points, forces = step.ground_reaction()
+        points, forces = step.balance.ground_reaction(
+            step.state.place, step.gait, step.frame, self._planner.ankle_height
+        )
         torque = self.config.balance.torque_gain * self._force.torques(points, forces)
         swing = step.gait.swing
         torque[self._legs[swing]] += (

@@ -1,5 +1,6 @@
 """Feed-forward torques of the legs: gravity, and the ground reaction that the pendulum asks for."""
 
+import mujoco
 import numpy as np
 
 from controller.robot_model import RobotModel
@@ -7,25 +8,22 @@ from hil.interface import Floats
 
 
 class SupportForce:
-    """τ_ff = g(q) − Σ_feet Jᵀ_f·F_f.
+    """τ_ff = g(q, q̇) − Σ_feet J_fᵀ·F_f.
 
-    g(q) holds every link's weight with the base held; F_f acts on the sole of foot f. Joint i of
-    that leg with axis a_i and anchor o_i gets −a_i · ((p_f − o_i) × F_f).
+    g holds every link's weight (and balances its velocity terms) with the base held; F_f acts on
+    the sole of foot f, J_f is the Jacobian of that point of the foot.
     """
 
-    def __init__(self, model: RobotModel, legs: Floats) -> None:
+    def __init__(self, model: RobotModel) -> None:
         self._model = model
-        self._joints = model.joint_ids[legs]
-        self._legs = legs
+        self._bias: Floats = np.zeros(model.model.nv)
+        self._jacobian: Floats = np.zeros((3, model.model.nv))
 
     def torques(self, points: Floats, forces: Floats) -> Floats:
         """Joint torques [N·m], shape (n,), for sole points [m] and ground reactions [N], (2, 3)."""
-        data = self._model.data
-        torque = self._model.gravity_torques()
-        lever = points[:, None, :] - data.xanchor[self._joints]
-        axis = data.xaxis[self._joints]
-        force = forces[:, None, :]
-        moment = lever[..., [1, 2, 0]] * force[..., [2, 0, 1]]
-        moment -= lever[..., [2, 0, 1]] * force[..., [1, 2, 0]]
-        torque[self._legs] -= np.einsum("ijk,ijk->ij", axis, moment)
-        return torque
+        model, data, bias = self._model.model, self._model.data, self._bias
+        mujoco.mj_rne(model, data, 0, bias)
+        for body, point, force in zip(self._model.foot_bodies, points, forces, strict=True):
+            mujoco.mj_jac(model, data, self._jacobian, None, point, body)
+            bias -= force @ self._jacobian
+        return bias[self._model.dof_addresses]

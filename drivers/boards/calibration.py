@@ -1,5 +1,6 @@
 """From raw board counts to SI: load-cell zero and scale, IMU mounting."""
 
+import math
 from typing import Annotated
 
 import numpy as np
@@ -20,7 +21,7 @@ from hil.validation import Config
 _ORIENTATION = int(ImuStatus.ORIENTATION)
 _GYRO = int(ImuStatus.GYRO)
 _ACCELEROMETER = int(ImuStatus.ACCELEROMETER)
-_LEAST_NORM = 0.5 / ORIENTATION_UNIT
+_LEAST_NORM = 0.5
 """A shorter quaternion is no orientation, whatever the status says."""
 
 FourFloats = Annotated[tuple[float, ...], Field(min_length=4, max_length=4)]
@@ -82,24 +83,28 @@ class ImuConverter:
     def __init__(self, calibration: ImuCalibration) -> None:
         mounting = np.array(calibration.mounting)
         mounting /= np.linalg.norm(mounting)
-        self._gyro_matrix = GYRO_UNIT * _matrix(mounting)
-        self._acceleration_matrix = ACCELERATION_UNIT * _matrix(mounting)
-        self._inverse = _right_product(mounting * [1, -1, -1, -1])
+        rotation = _matrix(mounting)
+        self._all = np.zeros((10, 10))
+        """Board counts to base values, the three parts of a frame at once."""
+        self._all[:4, :4] = ORIENTATION_UNIT * _right_product(mounting * [1, -1, -1, -1])
+        self._all[4:7, 4:7] = GYRO_UNIT * rotation
+        self._all[7:, 7:] = ACCELERATION_UNIT * rotation
 
     def convert(
         self, frame: ImuFrame, orientation: Floats, gyro: Floats, acceleration: Floats
     ) -> None:
         """Write (w, x, y, z), [rad/s] and [m/s²] in base axes; invalid parts keep theirs."""
+        values = self._all @ (*frame.orientation, *frame.gyro, *frame.acceleration)
         status = frame.status
         if status & _ORIENTATION:
-            raw = np.array(frame.orientation, dtype=np.float64)
-            norm = np.sqrt(raw @ raw)
+            quaternion = values[:4]
+            norm = math.sqrt(quaternion @ quaternion)
             if norm > _LEAST_NORM:
-                np.matmul(self._inverse, raw / norm, out=orientation)
+                np.divide(quaternion, norm, out=orientation)
         if status & _GYRO:
-            np.matmul(self._gyro_matrix, frame.gyro, out=gyro)
+            gyro[:] = values[4:7]
         if status & _ACCELEROMETER:
-            np.matmul(self._acceleration_matrix, frame.acceleration, out=acceleration)
+            acceleration[:] = values[7:]
 
 
 def _matrix(q: Floats) -> Floats:

@@ -22,6 +22,8 @@ OVERHEAD = 12
 DEVICE_TIME_MODULUS = 1 << 32
 """Device time wraps after 2³² µs, 71.6 minutes."""
 SEQUENCE_MODULUS = 1 << 16
+LARGEST_GAP = 1000
+"""Frames that can be lost in a row and still count as lost: more than a second's worth."""
 
 STANDARD_GRAVITY = 9.80665
 ORIENTATION_UNIT = 1 / 16384
@@ -172,9 +174,9 @@ class FrameReader:
         return ImuFrame(sequence, time_us, status, (w, x, y, z), gyro, acceleration)
 
     def _count_lost(self, sequence: int) -> None:
-        """A gap of half the number range or more is a restart of the board, not a loss."""
+        """A gap beyond LARGEST_GAP is a restart of the board, not a loss."""
         if self._last_sequence is not None:
             gap = (sequence - self._last_sequence - 1) % SEQUENCE_MODULUS
-            if gap < SEQUENCE_MODULUS // 2:
+            if gap <= LARGEST_GAP:
                 self.lost_frames += gap
         self._last_sequence = sequence

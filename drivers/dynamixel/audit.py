@@ -16,6 +16,7 @@ from drivers.dynamixel.control_table import (
 from drivers.dynamixel.group_access import GroupAccess
 from drivers.dynamixel.servo_models import SERVO_MODELS, ServoModel
 from hil.errors import BackendError
+from hil.servo import COUNTS_PER_TURN
 
 FORBIDDEN_DRIVE_MODE = DriveMode.REVERSE | DriveMode.TORQUE_ON_BY_GOAL_UPDATE
 """Directions are the robot file's, and a goal must not switch torque on."""
@@ -60,6 +61,7 @@ def audit_bus(
     ):
         group.write_all(register, ids, 0)
     _correct(bus, client, group, present, result)
+    _check_position_limits(bus, group, present, result)
     firmware = group.read(Register.FIRMWARE_VERSION, ids)
     result.fast_reads = all(_knows_fast_reads(servo, firmware) for servo in servos)
     return result
@@ -106,7 +108,6 @@ def _correct(
         Register.RETURN_DELAY_TIME,
         Register.DRIVE_MODE,
         Register.OPERATING_MODE,
-        Register.HOMING_OFFSET,
     ):
         values = group.read(register, ids)
         for servo in servos:
@@ -125,3 +126,20 @@ def _correct(
                 )
             client.write(servo.id, register, wanted)
             result.changes.append(f"{where}: {register.spec.name} {value} -> {wanted}")
+
+
+def _check_position_limits(
+    bus: str, group: GroupAccess, servos: Sequence[ExpectedServo], result: AuditResult
+) -> None:
+    """A servo ignores goals beyond its own limits, and a sync write does not say so."""
+    ids = [servo.id for servo in servos]
+    lowest = group.read(Register.MIN_POSITION_LIMIT, ids)
+    highest = group.read(Register.MAX_POSITION_LIMIT, ids)
+    for servo in servos:
+        limits = lowest.get(servo.id), highest.get(servo.id)
+        if limits != (0, COUNTS_PER_TURN - 1):
+            result.problems.append(
+                f"bus {bus} id {servo.id} ({servo.joint}) has position limits {limits[0]} to "
+                f"{limits[1]} and would ignore goals beyond; set Min and Max Position Limit to 0 "
+                f"and {COUNTS_PER_TURN - 1}"
+            )

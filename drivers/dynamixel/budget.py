@@ -103,6 +103,10 @@ class BusBudget:
         """The highest whole rate at which a tick fits its period."""
         return 1_000_000_000 // self.needed_ns
 
+    def slack_ns(self, rate_hz: int) -> int:
+        """Time of the period that is left over; negative when the rate cannot be carried [ns]."""
+        return 1_000_000_000 // rate_hz - self.needed_ns
+
     def check(self, rate_hz: int) -> None:
         """Raises InputError when the bus cannot carry the rate."""
         if self.needed_ns * rate_hz <= 1_000_000_000:

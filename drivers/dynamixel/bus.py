@@ -11,47 +11,30 @@ import numpy as np
 
 from drivers.dynamixel.budget import BusTiming
 from drivers.dynamixel.chain import Chain
-from drivers.dynamixel.control_table import VOLTAGE_UNIT, Register
 from drivers.dynamixel.port import Port
-from drivers.dynamixel.protocol import (
-    ALERT,
-    ERROR_MASK,
-    FastBlock,
-    PacketReader,
-    crc16,
-    decode_fast_status,
-)
+from drivers.dynamixel.protocol import FastBlock, PacketReader, crc16, decode_fast_status
 from drivers.dynamixel.read_plan import (
     FAULT,
     HOT,
     HOT_DTYPE,
     SLOW,
     Block,
+    BusServo,
     ReadPlan,
-    hot_values,
     plan_read,
 )
-from drivers.dynamixel.states import ALERT_UNKNOWN, ServoStates
+from drivers.dynamixel.state_filler import StateFiller
+from drivers.dynamixel.states import ServoStates
 from drivers.dynamixel.write_plan import ServoWriter
-from hil.interface import Ints
 from hil.servo import ServoGoals
 
 POLL_EVERY = 10
 """Ticks between longer reads; each takes one servo, in turn."""
-TIMEOUT_MARGIN_NS = 300_000
-"""Beyond wire, turnaround and adapter: USB jitter and the host's wake-up (assumed)."""
+LEAST_MARGIN_NS = 300_000
+"""Waiting beyond wire, turnaround and adapter: USB jitter and the host's wake-up (assumed)."""
 FAST_TRIALS = 10
 """Fast reads without any answer after which plain ones are used, if fast ones never worked."""
 _FAST_START = 8
-
-
-@dataclass(frozen=True, slots=True)
-class BusServo:
-    """One servo of a bus."""
-
-    id: int
-    joint: int
-    """Index in joint order."""
 
 
 @dataclass(slots=True)
@@ -61,6 +44,8 @@ class BusCounters:
     crc_errors: int = 0
     timeouts: int = 0
     """Reads that ran into their deadline."""
+    late: int = 0
+    """Answers to the request of an earlier tick, dropped."""
     stale: int = 0
     """Servo samples that did not arrive in their tick."""
 
@@ -77,52 +62,45 @@ class ServoBus:
         servos: Sequence[BusServo],
         states: ServoStates,
         fast: bool,
+        margin_ns: int = LEAST_MARGIN_NS,
     ) -> None:
+        """`margin_ns` is how long to wait beyond the time that an answer should take."""
         self.name = name
         self.port = port
-        self.timing = timing
-        self.servos = tuple(servos)
         self.fast = fast
         """Whether fast reads are used."""
         self.counters = BusCounters()
         self.deadline_ns = 0
         """When waiting for the answer of this tick ends."""
-        self._states = states
+        self._timing = timing
+        self._servos = tuple(servos)
+        self._margin_ns = margin_ns
         self._chain = Chain(len(servos))
-        self._plans: dict[tuple[tuple[int, ...], Block, bool], tuple[ReadPlan, Ints]] = {}
+        self._filler = StateFiller(servos, states)
+        self._plans: dict[tuple[tuple[int, ...], Block, bool], ReadPlan] = {}
         self._plan: ReadPlan | None = None
-        self._joints = np.zeros(0, dtype=np.int64)
         self._buffer = b""
         self._reader = PacketReader()
-        self._place = {servo.id: place for place, servo in enumerate(self.servos)}
-        self._heard: set[int] = set()
-        self._sample_ns = 0
-        self._tick = 0
-        self._polled = 0
-        self._alerting: set[int] = set()
+        self._turn = self._damaged = 0
+        self._tick = self._polled = 0
         self._fast_failures: int | None = 0
-        self._writer = ServoWriter(
-            [servo.id for servo in self.servos],
-            np.array([servo.joint for servo in self.servos], dtype=np.int64),
-        )
-
-    # Reading
+        joints = np.array([servo.joint for servo in servos], dtype=np.int64)
+        self._writer = ServoWriter([servo.id for servo in servos], joints)
 
     def begin_read(self, now_ns: int) -> None:
         """Send this tick's request."""
         members = self._chain.members()
         self._plan = None
         self._buffer = b""
-        self._heard.clear()
+        self._turn = self._damaged = 0
         if not members:
             return
-        members, last = self._choose_last(members)
-        self._plan, self._joints = self._plan_for(members, last)
+        plan = self._plan = self._choose(members)
         self.port.discard_input()
         self._reader.reset()
-        self.port.write(self._plan.packet)
-        self.deadline_ns = now_ns + self._plan.timeout_ns
-        self._sample_ns = now_ns + self._plan.sample_delay_ns
+        self.port.write(plan.packet)
+        self.deadline_ns = now_ns + plan.timeout_ns
+        self._filler.begin(now_ns + plan.sample_delay_ns)
 
     def collect(self) -> bool:
         """Take what was received; True when nothing more is to come."""
@@ -133,151 +111,32 @@ class ServoBus:
         if not plan.fast:
             return self._collect_plain(plan, data)
         self._buffer += data
-        if len(self._buffer) < plan.reply_size:
-            return False
-        start = self._buffer.find(plan.start)
-        if start < 0 or len(self._buffer) < start + plan.reply_size:
-            return False
-        return self._take_whole(plan, self._buffer[start : start + plan.reply_size])
+        while len(self._buffer) >= plan.reply_size:
+            start = self._buffer.find(plan.start)
+            end = start + plan.reply_size
+            if start < 0 or len(self._buffer) < end:
+                return False
+            if self._take_whole(plan, self._buffer[start:end]):
+                return True
+            self.counters.late += 1
+            self._buffer = self._buffer[end:]
+        return False
 
     def finish_read(self) -> None:
         """End the tick's read: save what arrived of an answer, note who did not."""
         plan = self._plan
         if plan is None:
-            self.counters.stale += len(self.servos)
+            self.counters.stale += len(self._servos)
             return
-        missing = len(self.servos) - len(self._heard)
-        if not missing:
-            return
-        if plan.fast and not self._heard:
+        heard = self._filler.heard
+        if plan.fast and not heard:
             self._salvage(plan)
-            missing = len(self.servos) - len(self._heard)
-        self.counters.stale += missing
-        self._note_missing(plan)
-
-    def _choose_last(self, members: tuple[int, ...]) -> tuple[tuple[int, ...], Block]:
-        """In a polling tick, move the servo whose turn it is to the end."""
-        self._tick += 1
-        urgent = [place for place in self._alerting if self._cause_unknown(place)]
-        due = urgent or self._tick % POLL_EVERY == 0
-        if not due or any(place in members for place in self._chain.silent):
-            return members, HOT
-        self._polled += not urgent
-        place = urgent[0] if urgent else members[self._polled % len(members)]
-        block = FAULT if place in self._alerting else SLOW
-        self._writer.refresh(place)
-        return (*(p for p in members if p != place), place), block
-
-    def _cause_unknown(self, place: int) -> bool:
-        return int(self._states.error[self.servos[place].joint]) == ALERT_UNKNOWN
-
-    def _plan_for(self, members: tuple[int, ...], last: Block) -> tuple[ReadPlan, Ints]:
-        key = (members, last, self.fast)
-        if key not in self._plans:
-            ids = [self.servos[place].id for place in members]
-            plan = plan_read(members, ids, last, self.fast, self.timing, TIMEOUT_MARGIN_NS)
-            joints = [self.servos[place].joint for place in members]
-            self._plans[key] = (plan, np.array(joints, dtype=np.int64))
-        return self._plans[key]
-
-    def _take_whole(self, plan: ReadPlan, raw: bytes) -> bool:
-        """Decode a fast answer that is as long as it should be."""
-        if crc16(raw[:-2]) != raw[-2] | raw[-1] << 8:
-            return True
-        count = len(plan.ids) if plan.last is HOT else len(plan.ids) - 1
-        blocks = np.frombuffer(raw, HOT_DTYPE, count, _FAST_START)
-        if (
-            self._alerting
-            or blocks["error"].any()
-            or blocks["id"].tobytes() != (plan.id_bytes[:count])
-        ):
-            return True
-        joints = self._joints[:count]
-        states = self._states
-        states.position[joints] = blocks["position"]
-        states.velocity[joints] = blocks["velocity"]
-        states.current[joints] = blocks["current"]
-        states.valid[joints] = True
-        states.time_ns[joints] = self._sample_ns
-        self._heard.update(plan.members[:count])
-        if plan.last is not HOT:
-            tail = raw[-(plan.last.length + 4) : -2]
-            self._take(plan, FastBlock(tail[0], tail[1], tail[2:]))
+        self.counters.stale += len(self._servos) - len(heard)
         if self._chain.silent:
-            for place in plan.members:
+            for place in heard:
                 self._chain.heard(place)
-        self._fast_failures = None
-        return True
-
-    def _collect_plain(self, plan: ReadPlan, data: bytes) -> bool:
-        """Take the status packets of a plain read."""
-        errors = self._reader.crc_errors
-        for packet in self._reader.feed(data):
-            if packet.is_status and packet.id in plan.ids:
-                self._take(plan, FastBlock(packet.error, packet.id, packet.data))
-        self.counters.crc_errors += self._reader.crc_errors - errors
-        return len(self._heard) == len(plan.members)
-
-    def _salvage(self, plan: ReadPlan) -> None:
-        """Take the blocks of a fast answer that can be trusted."""
-        start = max(0, self._buffer.find(plan.start))
-        blocks = decode_fast_status(self._buffer[start:], plan.lengths)
-        for block in blocks:
-            self._take(plan, block)
-        if blocks:
-            self._fast_failures = None
-        elif self._fast_failures is not None:
-            self._fast_failures += 1
-            self.fast = self._fast_failures < FAST_TRIALS
-
-    def _take(self, plan: ReadPlan, servo: FastBlock) -> None:
-        """Take one servo's answer, unless it reports that it could not do what it was asked."""
-        place = self._place.get(servo.id)
-        if place is None or place not in plan.members:
-            return
-        block = plan.last if place == plan.members[-1] else HOT
-        if servo.error & ERROR_MASK or len(servo.data) != block.length:
-            return
-        joint = self.servos[place].joint
-        states = self._states
-        values = hot_values(block, servo)
-        states.current[joint], states.velocity[joint], states.position[joint] = values
-        states.valid[joint] = True
-        states.time_ns[joint] = self._sample_ns
-        if block is not HOT:
-            voltage = block.value(Register.PRESENT_INPUT_VOLTAGE, servo.data)
-            states.voltage[joint] = VOLTAGE_UNIT * voltage
-            states.temperature[joint] = block.value(Register.PRESENT_TEMPERATURE, servo.data)
-        self._take_alert(place, block, servo)
-        self._heard.add(place)
-        self._chain.heard(place)
-
-    def _take_alert(self, place: int, block: Block, servo: FastBlock) -> None:
-        """Keep track of who alerts, and why."""
-        joint = self.servos[place].joint
-        if not servo.error & ALERT:
-            self._alerting.discard(place)
-            self._states.error[joint] = 0
-            return
-        self._alerting.add(place)
-        if block is FAULT:
-            cause = block.value(Register.HARDWARE_ERROR_STATUS, servo.data)
-            self._states.error[joint] = cause
-        elif self._states.error[joint] == 0:
-            self._states.error[joint] = ALERT_UNKNOWN
-
-    def _note_missing(self, plan: ReadPlan) -> None:
-        """Count the failure, and blame the first servo that did not answer if one is silent."""
-        silent = next((place for place in plan.members if place not in self._heard), None)
-        if silent is None:
-            return
-        if plan.fast and len(self._buffer) >= plan.reply_size:
-            self.counters.crc_errors += 1
-            return
-        self.counters.timeouts += 1
-        self._chain.missed(silent)
-
-    # Writing
+        if len(heard) < len(plan.members):
+            self._note_missing(plan)
 
     def write(self, goals: ServoGoals) -> None:
         """Send the goals of this bus's servos: positions always, the rest where it changed."""
@@ -286,3 +145,87 @@ class ServoBus:
     def forget_written(self) -> None:
         """Send everything with the next write (after a reboot or arming)."""
         self._writer.forget()
+
+    def _choose(self, members: tuple[int, ...]) -> ReadPlan:
+        """The plan of this tick: in a polling tick, the servo whose turn it is goes to the end."""
+        self._tick += 1
+        unexplained = self._filler.unexplained()
+        due = unexplained is not None or self._tick % POLL_EVERY == 0
+        if not due or any(place in members for place in self._chain.silent):
+            return self._plan_for(members, HOT)
+        place = unexplained
+        if place is None:
+            self._polled += 1
+            place = sorted(members)[self._polled % len(members)]
+        self._writer.refresh(place)
+        block = FAULT if place in self._filler.alerting else SLOW
+        return self._plan_for((*(p for p in members if p != place), place), block)
+
+    def _plan_for(self, members: tuple[int, ...], last: Block) -> ReadPlan:
+        key = (members, last, self.fast)
+        if key not in self._plans:
+            servos = [self._servos[place] for place in members]
+            self._plans[key] = plan_read(
+                members, servos, last, self.fast, self._timing, self._margin_ns
+            )
+        return self._plans[key]
+
+    def _take_whole(self, plan: ReadPlan, raw: bytes) -> bool:
+        """Decode a fast answer that is as long as it should be; False if it is an earlier one.
+
+        One that is damaged or carries alerts is left to `finish_read`.
+        """
+        if crc16(raw[:-2]) != raw[-2] | raw[-1] << 8:
+            return True
+        count = len(plan.ids) if plan.last is HOT else len(plan.ids) - 1
+        blocks = np.frombuffer(raw, HOT_DTYPE, count, _FAST_START)
+        if blocks["id"].tobytes() != plan.id_bytes[:count]:
+            return False
+        if self._filler.alerting or blocks["error"].any():
+            return True
+        self._filler.take_all(plan, blocks)
+        if plan.last is not HOT:
+            tail = raw[-(plan.last.length + 4) : -2]
+            self._filler.take(plan, FastBlock(tail[0], tail[1], tail[2:]))
+        self._fast_failures = None
+        return True
+
+    def _collect_plain(self, plan: ReadPlan, data: bytes) -> bool:
+        """Take the status packets of a plain read, in the order of the chain."""
+        errors = self._reader.crc_errors
+        packets = self._reader.feed(data)
+        self._damaged += self._reader.crc_errors - errors
+        self.counters.crc_errors += self._reader.crc_errors - errors
+        for packet in packets:
+            if not packet.is_status or packet.id not in plan.ids:
+                continue
+            turn = plan.ids.index(packet.id)
+            # The first of the chain begins anew: what came before it was a late answer.
+            if turn == 0 or self._turn <= turn <= self._turn + self._damaged:
+                self._filler.take(plan, FastBlock(packet.error, packet.id, packet.data))
+                self._turn = turn + 1
+            else:
+                self.counters.late += 1
+        return self._turn == len(plan.ids)
+
+    def _salvage(self, plan: ReadPlan) -> None:
+        """Take the blocks of a fast answer that can be trusted."""
+        start = max(0, self._buffer.find(plan.start))
+        blocks = decode_fast_status(self._buffer[start:], plan.lengths)
+        for block, servo_id in zip(blocks, plan.ids, strict=False):
+            if block.id == servo_id:
+                self._filler.take(plan, block)
+        if blocks:
+            self._fast_failures = None
+        elif self._fast_failures is not None:
+            self._fast_failures += 1
+            self.fast = self._fast_failures < FAST_TRIALS
+
+    def _note_missing(self, plan: ReadPlan) -> None:
+        """Count the failure; if it was silence, blame the first servo that did not answer."""
+        if plan.fast and len(self._buffer) >= plan.reply_size:
+            self.counters.crc_errors += 1
+            return
+        heard = self._filler.heard
+        self.counters.timeouts += 1
+        self._chain.missed(next(place for place in plan.members if place not in heard))

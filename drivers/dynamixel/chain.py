@@ -3,10 +3,13 @@
 Servos answer one after the other, each waiting for the one before: behind a silent servo nobody
 answers. So a servo that missed its turn goes to the end of the chain, and one that stays silent
 is left out but for a probe now and then.
+
+The order turns round from tick to tick. It costs nothing, and tells an answer that comes a tick
+late, which nothing else in the protocol marks, from the one that is waited for.
 """
 
-GIVE_UP_AFTER = 3
-"""Misses in a row after which a servo is only probed."""
+GIVE_UP_AFTER = 10
+"""Misses in a row after which a servo is only probed; a loop gives up on it earlier."""
 PROBE_EVERY = 10
 """Ticks between probes of silent servos."""
 
@@ -16,6 +19,7 @@ class Chain:
 
     def __init__(self, size: int) -> None:
         self._all = tuple(range(size))
+        self._orders = (self._all, self._all[::-1])
         self._misses: dict[int, int] = {}
         self._tick = 0
         self._probe = 0
@@ -28,9 +32,10 @@ class Chain:
     def members(self) -> tuple[int, ...]:
         """Servos to ask in this tick: those that answer first, then doubtful ones."""
         self._tick += 1
+        order = self._orders[self._tick % 2]
         if not self._misses:
-            return self._all
-        answering = [place for place in self._all if place not in self._misses]
+            return order
+        answering = [place for place in order if place not in self._misses]
         doubtful = [place for place, misses in self._misses.items() if misses < GIVE_UP_AFTER]
         lost = [place for place, misses in self._misses.items() if misses >= GIVE_UP_AFTER]
         if lost and self._tick % PROBE_EVERY == 0:

@@ -15,9 +15,9 @@ from hil.interface import Clock
 
 ATTEMPTS = 4
 """How often servos that did not answer are asked."""
-MARGIN_NS = 2_000_000
-"""Beyond wire and adapter: factory Return Delay Time (0.5 ms a servo) and the host's wake-up
-(assumed)."""
+MARGIN_NS = 20_000_000
+"""Waiting beyond wire and adapter: factory Return Delay Time (0.5 ms a servo) and the host's
+wake-up (assumed)."""
 
 
 class GroupAccess:

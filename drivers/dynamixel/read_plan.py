@@ -19,6 +19,7 @@ from drivers.dynamixel.protocol import (
     encode_sync_read,
     fast_status_start,
 )
+from hil.interface import Ints
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +60,15 @@ HOT_DTYPE = np.dtype(
 
 
 @dataclass(frozen=True, slots=True)
+class BusServo:
+    """One servo of a bus."""
+
+    id: int
+    joint: int
+    """Index in joint order."""
+
+
+@dataclass(frozen=True, slots=True)
 class ReadPlan:
     """Who is asked in one tick, in which order, and what comes back."""
 
@@ -66,6 +76,8 @@ class ReadPlan:
     """Places of the servos on the bus, in the order of their answers."""
     ids: tuple[int, ...]
     id_bytes: bytes
+    joints: Ints
+    """Their indices in joint order."""
     last: Block
     """What the last servo is asked for; HOT in most ticks."""
     lengths: tuple[int, ...]
@@ -82,13 +94,14 @@ class ReadPlan:
 
 def plan_read(
     members: tuple[int, ...],
-    ids: Sequence[int],
+    servos: Sequence[BusServo],
     last: Block,
     fast: bool,
     timing: BusTiming,
     margin_ns: int,
 ) -> ReadPlan:
-    """The read of `members`, whose servos have `ids`; `margin_ns` is added to the timeout."""
+    """The read of `members`, which are `servos`; `margin_ns` is added to the timeout."""
+    ids = tuple(servo.id for servo in servos)
     lengths = (HOT.length,) * (len(ids) - 1) + (last.length,)
     if last is HOT:
         packet = encode_sync_read(ids, HOT.address, HOT.length, fast)
@@ -99,8 +112,9 @@ def plan_read(
     timeout = timing.read_time_ns(len(packet), size, len(ids), fast) + margin_ns
     return ReadPlan(
         members=members,
-        ids=tuple(ids),
+        ids=ids,
         id_bytes=bytes(ids),
+        joints=np.array([servo.joint for servo in servos], dtype=np.int64),
         last=last,
         lengths=lengths,
         fast=fast,

@@ -12,7 +12,7 @@ from drivers.dynamixel.port import Port
 from drivers.dynamixel.protocol import PREFIX_SIZE, encode_instruction
 from hil.interface import Clock
 
-ANSWER_MARGIN_NS = 5_000_000
+ANSWER_MARGIN_NS = 20_000_000
 """Beyond wire and adapter: Return Delay Time as it leaves the factory, EEPROM writes, host wake-up
 (assumed; a missing servo costs this much each time it is asked)."""
 

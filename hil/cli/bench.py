@@ -8,7 +8,7 @@ from typer import Option
 
 
 def bench(
-    duration: Annotated[float, Option(help="Walking time of each case [s].")] = 5.0,
+    duration: Annotated[float, Option(help="Walking time of each case in s.")] = 5.0,
     as_json: Annotated[bool, Option("--json", help="Print the rows as JSON.")] = False,
 ) -> None:
     """Measure controller, tick and driver, beside the figures the project holds itself to.

@@ -12,7 +12,7 @@ stride emulate --json        one line with the ports; then point your own client
 
 def emulate(
     robot: Annotated[str, Argument(help="A robot that ships, or a YAML file.")] = "minibiped",
-    rate: Annotated[int | None, Option(help="Rate the physics grid fits [Hz].")] = None,
+    rate: Annotated[int | None, Option(help="Rate that the physics grid fits, in Hz.")] = None,
     seed: Annotated[int, Option(help="Draws sensor noise, biases and latency jitter.")] = 0,
     overrides: Annotated[
         list[str] | None,

@@ -19,10 +19,10 @@ def plot(
     ] = None,
 ) -> None:
     """Draw a run's picture from its recording, even if the run was killed."""
-    from hil.description import load_robot
     from hil.errors import InputError
     from hil.figures import draw_run
     from hil.recording import read_recording
+    from hil.robot_files import load_robot
 
     recording = read_recording(run)
     trace = recording.trace()

@@ -19,7 +19,7 @@ stride walk --backend mujoco --speed 0 --speed 0.3@10    from 0 to 0.3 m/s in 10
 
 stride walk --turn 90@5 --push 0,3,0@8+0.3        a left turn, then a push from the right
 
-stride walk --realtime --duration 30              in real time, with the timing in the report
+stride walk --realtime --duration 30              in real time, on pseudo-terminals
 
 stride walk human --rate 300 --duration 60        the seeds' character, on MuJoCo
 """
@@ -35,8 +35,8 @@ def walk(
         BusName | None, Option(help="With the bus backend: virtual servos, or real ones.")
     ] = None,
     live: Annotated[bool, Option("--live", help="Real servos may move.")] = False,
-    rate: Annotated[int | None, Option(help="Control rate [Hz].", show_default="robot's")] = None,
-    duration: Annotated[float, Option(help="Walking time [s].")] = 20.0,
+    rate: Annotated[int | None, Option(help="Control rate in Hz.", show_default="robot's")] = None,
+    duration: Annotated[float, Option(help="Walking time in s.")] = 20.0,
     seed: Annotated[int, Option(help="Draws sensor noise, biases and latency jitter.")] = 0,
     realtime: Annotated[
         bool, Option("--realtime", help="Pace a simulated robot by the clock on the wall.")
@@ -46,7 +46,7 @@ def walk(
     ] = None,
     speed: Annotated[
         list[str] | None,
-        Option(metavar="V[@T]", help="Speed [m/s] at a time [s]; repeatable, linear between."),
+        Option(metavar="V[@T]", help="Speed in m/s, at a time in s; repeatable, linear between."),
     ] = None,
     lateral: Annotated[
         list[str] | None,
@@ -57,11 +57,11 @@ def walk(
         Option(metavar="DEG@T", help="Turn from the present heading, left positive; repeatable."),
     ] = None,
     step_width: Annotated[
-        float | None, Option(help="Lateral distance of the feet [m].", show_default="robot's")
+        float | None, Option(help="Lateral distance of the feet in m.", show_default="robot's")
     ] = None,
     push: Annotated[
         list[str] | None,
-        Option(metavar="FX,FY,FZ@T+DT", help="World force [N] on the torso; repeatable."),
+        Option(metavar="FX,FY,FZ@T+DT", help="World force in N on the torso; repeatable."),
     ] = None,
     estimator: Annotated[
         EstimatorName | None, Option(help="Sensors only, or the simulation's truth.")

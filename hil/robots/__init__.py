@@ -1,0 +1,1 @@
+"""Robots that ship: one folder a robot, with its description, model and derivation."""

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
-from drivers.dynamixel.control_table import RETURN_DELAY_UNIT_NS, StatusReturnLevel
+from drivers.dynamixel.control_table import RETURN_DELAY_UNIT_NS, TABLE_SIZE, StatusReturnLevel
 from drivers.dynamixel.protocol import (
     BROADCAST_ID,
     Instruction,
@@ -42,7 +42,8 @@ class Dispatcher:
 
     Group reads are answered in the order of the request; where one servo does not answer, those
     behind it stay silent too (ROBOTIS in DynamixelSDK issue 364). A fast read is one packet that
-    the servos write together, so it ends at that place. Group writes are not answered at all.
+    the servos write together, so it ends at that place; one for more bytes than fit a packet is
+    not answered (assumed). Group writes are not answered at all.
     """
 
     def __init__(self, servos: Sequence[EmulatedServo]) -> None:
@@ -120,6 +121,8 @@ class Dispatcher:
         ]
 
     def _read_fast(self, items: Items) -> list[Reply]:
+        if sum(item[2] for item in items) > TABLE_SIZE:
+            return []
         out, crc, gap_ns = b"", 0, 0
         for servo, address, length in self._readers(items):
             if not out:
@@ -131,6 +134,8 @@ class Dispatcher:
         return [Reply(gap_ns, out)] if out else []
 
     def _write_sync(self, params: bytes) -> list[Reply]:
+        if len(params) < _WORDS.size:
+            return []
         address, length = _WORDS.unpack_from(params)
         for begin in range(_WORDS.size, len(params) - length, 1 + length):
             servo = self._hearing.get(params[begin])

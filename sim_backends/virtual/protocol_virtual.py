@@ -6,7 +6,6 @@ pyserial finds this module by its name in the packages of `serial.protocol_handl
 from typing import Any
 
 import serial
-from typing_extensions import Buffer
 
 from sim_backends.virtual.host_port import Device, HostPort
 
@@ -64,7 +63,7 @@ class Serial(serial.SerialBase):
         """Up to `size` bytes that have arrived."""
         return self._held().take(size)
 
-    def write(self, data: Buffer, /) -> int:
+    def write(self, data: Any, /) -> int:
         """Hand bytes to the device at the present virtual time."""
         self._held()
         sent = bytes(data)

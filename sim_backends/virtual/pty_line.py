@@ -54,7 +54,7 @@ class PtyLine:
         """Hand what the client wrote to the device."""
         try:
             data = os.read(self._master, _READ_SIZE)
-        except (BlockingIOError, OSError):
+        except OSError:
             return  # The client went away between select and read.
         if data:
             self._device.host_wrote(data, self._baud())

@@ -96,7 +96,7 @@ class RemoteWorld:
             self._socket.connect(str(control))
             self._answers = self._socket.makefile("rb")
             hello = self._ask({"do": "hello"})
-        except OSError as error:
+        except (OSError, BackendError) as error:
             self._socket.close()
             raise BackendError(f"control socket {control}: {error}") from error
         self.calibration_data: dict[str, Any] = hello["calibration"]

@@ -19,8 +19,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from hil.description import RobotDescription, load_robot
+from hil.description import RobotDescription
 from hil.errors import StrideError
+from hil.robot_files import load_robot
 from sim_backends.plant import Plant
 from sim_backends.virtual.control import ControlServer, Request, three_numbers
 from sim_backends.virtual.motors import nominal_motors

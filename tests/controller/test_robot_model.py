@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from controller.robot_model import RobotModel
-from hil.description import RobotDescription, load_robot
+from hil.description import RobotDescription
 from hil.errors import DescriptionError
+from hil.robot_files import load_robot
 
 
 def state_of(description, seed):

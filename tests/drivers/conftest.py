@@ -28,6 +28,7 @@ class FakeServo:
         self[Register.FIRMWARE_VERSION] = firmware
         self[Register.RETURN_DELAY_TIME] = 250
         self[Register.OPERATING_MODE] = 3
+        self[Register.MAX_POSITION_LIMIT] = 4095
         self[Register.PRESENT_POSITION] = 2048
         self[Register.PRESENT_INPUT_VOLTAGE] = 120
         self[Register.PRESENT_TEMPERATURE] = 30

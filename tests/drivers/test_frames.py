@@ -1,6 +1,7 @@
 """Board frames: the documented bytes, resynchronisation, and counting what is lost."""
 
 import struct
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -32,6 +33,12 @@ def test_foot_frame_has_the_documented_bytes():
 def test_imu_frame_has_the_documented_bytes():
     body = b"\x12\x16" + struct.pack("<HIH10h", 8, 2000, 7, 16384, 0, 0, 0, 1, 2, 3, -4, 5, 4096)
     assert b"\xa5\x5a" + body + struct.pack("<H", ccitt_false(body)) == IMU
+
+
+def test_the_documented_example_is_a_frame():
+    page = (Path(__file__).parents[2] / "docs" / "frames.md").read_text(encoding="utf-8")
+    example = page.split("```")[1]
+    assert bytes.fromhex(example) == FOOT
 
 
 def test_frames_round_trip():

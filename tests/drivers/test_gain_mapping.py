@@ -7,9 +7,9 @@ from hypothesis import strategies as st
 
 from drivers.calibration import RobotCalibration
 from drivers.dynamixel.gain_mapping import GainMapping
-from hil.description import load_robot
 from hil.errors import InputError
 from hil.interface import JointCommand, Limit, SensorFrame
+from hil.robot_files import load_robot
 from hil.servo import COUNTS_PER_RADIAN
 
 N = 12

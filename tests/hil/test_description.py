@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 import yaml
 
-from hil.description import find_robot_file, load_robot, shipped_robots
 from hil.errors import DescriptionError, InputError, UnknownNameError
+from hil.robot_files import find_robot_file, load_robot, shipped_robots
 
 
 def edited(tmp_path: Path, change) -> str:

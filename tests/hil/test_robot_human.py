@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from hil.description import load_robot
+from hil.robot_files import load_robot
 from hil.robots.human.derivation import mjcf
 
 

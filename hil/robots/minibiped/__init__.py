@@ -1,0 +1,1 @@
+"""minibiped: a 0.5 m biped of twelve servos."""

@@ -11,8 +11,8 @@ from controller.robot_model import RobotModel
 from controller.walking.joint_groups import JointGroups
 from controller.walking.torque_config import TorqueWalkingConfig
 from controller.walking.torque_walker import TorqueWalker
-from hil.description import load_robot
 from hil.interface import Reference, SensorFrame
+from hil.robot_files import load_robot
 from hil.validation import validate
 from sim_backends.plant import Plant
 

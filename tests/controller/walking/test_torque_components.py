@@ -126,7 +126,7 @@ def test_root_rate_is_the_mean_of_two_ticks(human, human_config):
 
 
 def test_yaw_of_the_torso_is_weak_in_any_heading(human, human_config):
-    """Scales act in the heading frame: a robot that faces left is tracked like one that does not."""
+    """Scales act in the heading frame: whichever way the robot faces."""
     heading = about_z(np.pi / 2)
     state = body_state(human, np.zeros(len(human.joints)))
     state.base_orientation = np.array([np.cos(0.8), 0.0, 0.0, np.sin(0.8)])
@@ -157,7 +157,7 @@ def test_virtual_force_is_proportional_to_the_speed_error_and_capped(human, huma
 
 
 def test_levers_of_the_upright_body_by_hand(human, human_config):
-    """Zero pose: hips at z = .985, knees .515, ankles .055; thigh .775, shank .305, pelvis 1.035."""
+    """Zero pose, z: hip .985, knee .515, ankle .055; thigh .775, shank .305, pelvis 1.035."""
     virtual, _ = virtual_force(human, human_config)
     hip = 12.9 * (1.035 - 0.985) / 45.2
     knee = (12.9 * (1.035 - 0.515) + 6.6 * (0.775 - 0.515)) / 45.2

@@ -3,7 +3,6 @@
 import numpy as np
 
 from hil.clock import ManualClock
-from hil.description import load_robot
 from hil.interface import (
     AppliedCommand,
     Estimate,
@@ -15,6 +14,7 @@ from hil.interface import (
 )
 from hil.record_layout import topics
 from hil.request import RunRequest
+from hil.robot_files import load_robot
 from hil.session import Session
 
 JOINTS = 12
@@ -30,6 +30,7 @@ class FakeBackend:
         self.clock = clock or ManualClock()
         self.frame = SensorFrame.empty(JOINTS)
         self.frame.joint_age_ns[:] = 0
+        self.frame.joint_valid[:] = True
         self.frame.imu_age_ns = 0
         self.frame.foot_age_ns[:] = 0
         self.applied = AppliedCommand.zeros(JOINTS)

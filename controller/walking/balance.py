@@ -1,0 +1,85 @@
+"""Velocity tuning by the centre of pressure: the virtual force of the gait as an ankle ZMP."""
+
+import math
+
+import numpy as np
+
+from controller.robot_model import RobotModel
+from controller.walking.gait import Gait
+from controller.walking.heading_frame import HeadingFrame, Pair
+from controller.walking.pendulum_state import PendulumState
+from controller.walking.servo_config import BalanceConfig
+from hil.interface import Floats
+
+LOADED = 0.3
+"""Share of body weight on the stance foot from which its measured cop is used."""
+
+
+class Balance:
+    """Centre of pressure p, and the ground reaction that follows from it.
+
+    p = k_z·(ξ − ξ_ref), ξ_ref = b·e^(ωφT) the steady walk's capture point at phase φ, clipped to
+    the ankle limit. The force acts at p + k_c·(p − cop), cop the measured one: stiff ankles
+    on a sole that tilts a little would otherwise leave it at an edge.
+    """
+
+    def __init__(self, config: BalanceConfig, model: RobotModel, ankle_limit: bool) -> None:
+        self._config = config
+        self._model = model
+        self._corners: Floats = model.corner_positions[0] - model.ankle_positions[0]
+        nearest = np.abs(self._corners).min(axis=0)
+        self._sole: Pair = (float(nearest[0]), float(nearest[1]))
+        share = (config.limit_x, config.limit_y) if ankle_limit else (1.0, 1.0)
+        self._limit: Pair = (share[0] * self._sole[0], share[1] * self._sole[1])
+        self.pressure: Pair = (0.0, 0.0)
+        """p from the stance ankle, heading frame [m]."""
+        self._force_point: Pair = (0.0, 0.0)
+
+    def update(self, state: PendulumState, start: Pair, phase: float) -> None:
+        """Choose p for a steady start b of the present step."""
+        config, pendulum = self._config, state.pendulum
+        growth = math.exp(pendulum.omega * phase * pendulum.period)
+        self.pressure = (
+            clip(config.gain_x * (state.capture[0] - start[0] * growth), self._limit[0]),
+            clip(config.gain_y * (state.capture[1] - start[1] * growth), self._limit[1]),
+        )
+
+    def compare(self, force: Floats, gait: Gait, frame: HeadingFrame) -> None:
+        """Move the force's point against the error of the cop of the stance foot's corners."""
+        self._force_point = p = self.pressure
+        load = float(force.sum())
+        if load < LOADED * gait.weight or gait.time_in_step < self._config.settle_time:
+            return
+        rotation = self._model.foot_rotations[gait.stance]
+        measured = frame.to_heading(rotation @ (force @ self._corners / load))
+        k, limit = self._config.feedback, self._sole
+        self._force_point = (
+            clip(p[0] + k * (p[0] - measured[0]), limit[0]),
+            clip(p[1] + k * (p[1] - measured[1]), limit[1]),
+        )
+
+    def ground_reaction(
+        self, place: Pair, gait: Gait, frame: HeadingFrame, sole_drop: float
+    ) -> tuple[Floats, Floats]:
+        """Points on the soles [m] and forces on the feet [N], both (2, 3), world axes.
+
+        F = W·((x − p)/h, (y − p_y)/h, 1). A new stance foot takes it over linearly.
+        """
+        points = self._model.ankle_positions.copy()
+        points[:, 2] -= sole_drop
+        p, height = self._force_point, float(self._model.com[2])
+        points[gait.stance, :2] += frame.to_world(p)
+        x, y = frame.to_world(((place[0] - p[0]) / height, (place[1] - p[1]) / height))
+        share = min(gait.time_in_step / self._config.load_transfer_time, 1.0)
+        if gait.steps == 0:
+            share = 1.0
+        force = gait.weight * np.array([x, y, 1.0])
+        forces = np.empty((2, 3))
+        forces[gait.stance] = share * force
+        forces[gait.swing] = (1.0 - share) * force
+        return points, forces
+
+
+def clip(value: float, limit: float) -> float:
+    """The value within ±limit."""
+    return max(-limit, min(value, limit))

@@ -1,0 +1,29 @@
+"""Horizontal vectors between the world and the tracked heading, as plain numbers."""
+
+import math
+
+from hil.interface import Floats
+
+Pair = tuple[float, float]
+"""Sagittal and lateral component, or world x and y."""
+
+
+class HeadingFrame:
+    """x' = c·x + s·y, y' = c·y − s·x, with c, s of the heading ψ."""
+
+    def __init__(self) -> None:
+        self.set(0.0)
+
+    def set(self, heading: float) -> None:
+        """Turn to a heading [rad]."""
+        self._c, self._s = math.cos(heading), math.sin(heading)
+
+    def to_heading(self, vector: Floats | Pair) -> Pair:
+        """Sagittal and lateral component of a world vector."""
+        x, y = float(vector[0]), float(vector[1])
+        return self._c * x + self._s * y, self._c * y - self._s * x
+
+    def to_world(self, vector: Pair) -> Pair:
+        """World x and y of a sagittal and a lateral component."""
+        x, y = vector
+        return self._c * x - self._s * y, self._s * x + self._c * y

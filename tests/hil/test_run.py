@@ -1,0 +1,61 @@
+import json
+
+import pytest
+from hil_fakes import make_session
+
+from hil.errors import BackendError, InputError
+from hil.recording import read_recording
+from hil.run import run
+from hil.run_folder import make_run_folder
+
+FILES = ["meta.json", "picture.png", "report.json", "session.mcap"]
+
+
+def test_a_run_leaves_its_four_files_and_a_second_report(tmp_path):
+    out, copy = tmp_path / "run", tmp_path / "copy.json"
+    session = make_session(world=True, out=out, report=copy, seed=7)
+    result = run(session, progress=False)
+    assert result.folder == out
+    assert sorted(path.name for path in out.iterdir()) == FILES
+    assert json.loads((out / "report.json").read_text()) == result.report
+    assert copy.read_text() == (out / "report.json").read_text()
+    meta = json.loads((out / "meta.json").read_text())
+    assert (meta["seed"], meta["rung"], meta["request"]["duration_s"]) == (7, "dry run", 1.0)
+    assert meta["weight_n"] == pytest.approx(2.6 * 9.81, rel=0.05)
+    assert meta == read_recording(out).meta
+    assert (out / "picture.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_run_that_breaks_leaves_what_it_had_and_says_why(tmp_path):
+    session = make_session(world=True, out=tmp_path / "run")
+    session.controller.raising = BackendError("port lost")
+    with pytest.raises(BackendError, match="port lost"):
+        run(session, progress=False)
+    report = json.loads((tmp_path / "run" / "report.json").read_text())
+    assert [fault["name"] for fault in report["faults"]] == ["BackendError"]
+    recording = read_recording(tmp_path / "run")
+    assert recording.complete and len(recording.rows) > 0
+
+
+def test_a_backend_that_does_not_open_leaves_no_folder_and_nothing_open(tmp_path):
+    session = make_session(out=tmp_path / "run")
+    session.backend.raise_in["open"] = InputError("no such port")
+    with pytest.raises(InputError, match="no such port"):
+        run(session, progress=False)
+    assert not (tmp_path / "run").exists()
+    assert session.backend.journal == ["open", "close"]
+
+
+def test_a_folder_that_holds_something_is_not_written_into(tmp_path):
+    (tmp_path / "note.txt").write_text("mine")
+    session = make_session(out=tmp_path)
+    with pytest.raises(InputError, match="not empty"):
+        run(session, progress=False)
+    assert session.backend.journal == ["open", "close"]
+
+
+def test_runs_of_the_same_second_get_folders_of_their_own(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    folders = {make_run_folder(None, "minibiped") for _ in range(3)}
+    assert len(folders) == 3
+    assert all(folder.parent.name == "runs" for folder in folders)

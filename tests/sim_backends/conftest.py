@@ -1,0 +1,45 @@
+"""Plants of both robots, and a servo robot's goals as the driver would make them."""
+
+import numpy as np
+import pytest
+
+from hil.robot_files import load_robot
+from hil.servo import CENTRE_COUNTS, COUNTS_PER_RADIAN, ServoGoals
+from sim_backends.plant import Plant
+from sim_backends.virtual.motors import nominal_motors
+
+RATE = 300
+
+
+@pytest.fixture(scope="session")
+def minibiped():
+    return load_robot("minibiped")
+
+
+@pytest.fixture
+def make_plant(minibiped):
+    def make(*overrides, rate=RATE, seed=0):
+        description = load_robot("minibiped", overrides) if overrides else minibiped
+        return Plant(description, rate, seed, nominal_motors(description))
+
+    return make
+
+
+def goals_at(angles, p_gain=800, pwm_limit=885):
+    """Register values that hold joint angles [rad], all servos turning the joint's way."""
+    n = len(angles)
+    counts = np.rint(np.asarray(angles) * COUNTS_PER_RADIAN + CENTRE_COUNTS).astype(int)
+    return ServoGoals(counts, np.full(n, p_gain), np.zeros(n, int), np.full(n, pwm_limit))
+
+
+def hold(plant, angles=None):
+    """Torque on, holding the start pose or other angles."""
+    angles = plant.description.start_position if angles is None else angles
+    plant.servos.set_goals(goals_at(angles))
+    for servo in range(len(angles)):
+        plant.servos.set_enabled(servo, True)
+
+
+def run(plant, seconds):
+    for _ in range(round(seconds * plant.rate_hz)):
+        plant.step()
