@@ -2,7 +2,9 @@
 
 from typing import Annotated
 
-from typer import Argument, Option
+from typer import Option
+
+from hil.cli import options
 
 EPILOG = """[bold]Example[/bold]
 
@@ -11,13 +13,10 @@ stride emulate --json        one line with the ports; then point your own client
 
 
 def emulate(
-    robot: Annotated[str, Argument(help="A robot that ships, or a YAML file.")] = "minibiped",
-    rate: Annotated[int | None, Option(help="Rate that the physics grid fits, in Hz.")] = None,
-    seed: Annotated[int, Option(help="Draws sensor noise, biases and latency jitter.")] = 0,
-    overrides: Annotated[
-        list[str] | None,
-        Option("--set", metavar="KEY=VALUE", help="Change a value of the robot file; repeatable."),
-    ] = None,
+    robot: options.Robot = "minibiped",
+    rate: options.Rate = None,
+    seed: options.Seed = 0,
+    overrides: options.Overrides = None,
     as_json: Annotated[bool, Option("--json", help="Print the ports as one line of JSON.")] = False,
 ) -> None:
     """Serve a virtual robot's servo buses and sensor boards until stopped with Ctrl-C."""

@@ -1,0 +1,59 @@
+"""Options that more than one command takes, and the long list of `walk`."""
+
+from pathlib import Path
+from typing import Annotated
+
+from typer import Argument, Option
+
+from hil.request import BackendName, BusName, EstimatorName, PdName
+
+Robot = Annotated[str, Argument(help="A robot that ships, or a YAML file.")]
+Backend = Annotated[
+    BackendName | None,
+    Option(help="What stands behind the interface; the robot's own choice if not given."),
+]
+Bus = Annotated[BusName | None, Option(help="With the bus backend: virtual servos, or real ones.")]
+Live = Annotated[bool, Option("--live", help="Real servos may move.")]
+Rate = Annotated[int | None, Option(help="Control rate in Hz.", show_default="robot's")]
+Duration = Annotated[float, Option(help="Walking time in s.")]
+Seed = Annotated[int, Option(help="Draws sensor noise, biases and latency jitter.")]
+Realtime = Annotated[
+    bool, Option("--realtime", help="Pace a simulated robot by the clock on the wall.")
+]
+Priority = Annotated[
+    int | None, Option(help="SCHED_FIFO priority of the loop, with --realtime or --live.")
+]
+Speed = Annotated[
+    list[str] | None,
+    Option(metavar="V[@T]", help="Speed in m/s, at a time in s; repeatable, linear between."),
+]
+Lateral = Annotated[
+    list[str] | None,
+    Option(metavar="V[@T]", help="Sideways speed, left positive; repeatable as --speed."),
+]
+Turn = Annotated[
+    list[str] | None,
+    Option(metavar="DEG@T", help="Turn from the present heading, left positive; repeatable."),
+]
+StepWidth = Annotated[
+    float | None, Option(help="Lateral distance of the feet in m.", show_default="robot's")
+]
+Push = Annotated[
+    list[str] | None,
+    Option(metavar="FX,FY,FZ@T+DT", help="World force in N on the torso; repeatable."),
+]
+Estimator = Annotated[EstimatorName | None, Option(help="Sensors only, or the simulation's truth.")]
+Pd = Annotated[PdName | None, Option(help="Integration of a torque robot's PD.")]
+AnkleLimit = Annotated[
+    bool | None,
+    Option("--ankle-limit/--no-ankle-limit", help="Limit ankle torque by the measured load."),
+]
+Overrides = Annotated[
+    list[str] | None,
+    Option("--set", metavar="KEY=VALUE", help="Change a value of the robot file; repeatable."),
+]
+Out = Annotated[
+    Path | None, Option(help="The run folder itself.", show_default="runs/<time>-<robot>")
+]
+Report = Annotated[Path | None, Option(help="A second copy of report.json.")]
+Json = Annotated[bool, Option("--json", help="Print the report as JSON; the run folder on stderr.")]
