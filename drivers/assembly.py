@@ -117,9 +117,10 @@ def assemble_boards(
     """The boards of a robot on their open ports."""
 
     def reader(board: str, kind: int) -> BoardReader:
-        period_ns = 1_000_000_000 // description.boards[board].rate_hz
+        spec = description.boards[board]
+        period_ns = 1_000_000_000 // spec.rate_hz
         wire_ns = wire_time_ns(FRAME_SIZE[kind], ports[board].baud)
-        least_delay_ns = wire_ns + 1000 * description.timing.usb_transfer_us
+        least_delay_ns = wire_ns + 1000 * (spec.delay_us + description.timing.usb_transfer_us)
         return BoardReader(ports[board], least_delay_ns, period_ns, tick_ns)
 
     feet = {

@@ -55,6 +55,8 @@ class Board(Config):
     port: str | None = None
     baud: PositiveInt = 921600
     rate_hz: PositiveInt
+    delay_us: int = Field(default=0, ge=0)
+    """From acquisition to the frame's first byte, by the sensor's data sheet."""
 
 
 class Foot(Config):

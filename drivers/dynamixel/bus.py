@@ -45,7 +45,7 @@ class BusCounters:
     timeouts: int = 0
     """Reads that ran into their deadline."""
     late: int = 0
-    """Answers to the request of an earlier tick, dropped."""
+    """Answers to the request of an earlier tick; those of the last one are taken, at their age."""
     stale: int = 0
     """Servo samples that did not arrive in their tick."""
 
@@ -79,6 +79,8 @@ class ServoBus:
         self._filler = StateFiller(servos, states)
         self._plans: dict[tuple[tuple[int, ...], Block, bool], ReadPlan] = {}
         self._plan: ReadPlan | None = None
+        self._late_plan: ReadPlan | None = None
+        self._late_sample_ns = self._sample_ns = 0
         self._buffer = b""
         self._reader = PacketReader()
         self._turn = self._damaged = 0
@@ -90,17 +92,28 @@ class ServoBus:
     def begin_read(self, now_ns: int) -> None:
         """Send this tick's request."""
         members = self._chain.members()
+        self._expect_late()
         self._plan = None
-        self._buffer = b""
         self._turn = self._damaged = 0
         if not members:
             return
         plan = self._plan = self._choose(members)
-        self.port.discard_input()
         self._reader.reset()
         self.port.write(plan.packet)
         self.deadline_ns = now_ns + plan.timeout_ns
-        self._filler.begin(now_ns + plan.sample_delay_ns)
+        self._sample_ns = now_ns + plan.sample_delay_ns
+        self._filler.begin(self._sample_ns)
+
+    def _expect_late(self) -> None:
+        """A fast answer of which nothing could be used may still come; else start afresh."""
+        plan = self._plan
+        if plan is not None and plan.fast and not self._filler.heard:
+            self._late_plan, self._late_sample_ns = plan, self._sample_ns
+            self._buffer = self._buffer[-plan.reply_size :]
+            return
+        self._late_plan = None
+        self._buffer = b""
+        self.port.discard_input()
 
     def collect(self) -> bool:
         """Take what was received; True when nothing more is to come."""
@@ -111,6 +124,8 @@ class ServoBus:
         if not plan.fast:
             return self._collect_plain(plan, data)
         self._buffer += data
+        if self._late_plan is not None:
+            self._take_late(self._late_plan)
         while len(self._buffer) >= plan.reply_size:
             start = self._buffer.find(plan.start)
             end = start + plan.reply_size
@@ -169,6 +184,21 @@ class ServoBus:
                 members, servos, last, self.fast, self._timing, self._margin_ns
             )
         return self._plans[key]
+
+    def _take_late(self, plan: ReadPlan) -> None:
+        """Take the last tick's answer for what it is: older, and better than none."""
+        start = self._buffer.find(plan.start)
+        end = start + plan.reply_size
+        if start < 0 or len(self._buffer) < end:
+            return
+        self._filler.begin(self._late_sample_ns)
+        if self._take_whole(plan, self._buffer[start:end]) and self._filler.heard:
+            self.counters.late += 1
+            self._buffer = self._buffer[end:]
+            for place in self._filler.heard:
+                self._chain.heard(place)
+        self._late_plan = None
+        self._filler.begin(self._sample_ns)
 
     def _take_whole(self, plan: ReadPlan, raw: bytes) -> bool:
         """Decode a fast answer that is as long as it should be; False if it is an earlier one.

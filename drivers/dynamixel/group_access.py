@@ -18,6 +18,8 @@ ATTEMPTS = 4
 MARGIN_NS = 20_000_000
 """Waiting beyond wire and adapter: factory Return Delay Time (0.5 ms a servo) and the host's
 wake-up (assumed)."""
+QUIET_NS = 5_000_000
+"""A line that says nothing for so long has no late answer under way."""
 
 
 class GroupAccess:
@@ -45,9 +47,21 @@ class GroupAccess:
             if not missing:
                 break
             # A silent servo silences those behind it: ask in another order each time.
+            if attempt:
+                self._await_quiet()
             shift = attempt % len(missing)
             values.update(self._read_once(register, missing[shift:] + missing[:shift]))
         return values
+
+    def _await_quiet(self) -> None:
+        """Drop late answers: the next request's could be as long and be taken for them."""
+        deadline_ns = self._clock.now_ns() + MARGIN_NS
+        while self._clock.now_ns() < deadline_ns:
+            self._port.discard_input()
+            until_ns = self._clock.now_ns() + QUIET_NS
+            self._clock.wait_readable([self._port.stream], until_ns)
+            if self._clock.now_ns() >= until_ns:
+                return
 
     def _read_once(self, register: Register, ids: Sequence[int]) -> dict[int, int]:
         request = encode_sync_read(ids, register.address, register.size)

@@ -172,6 +172,23 @@ def test_an_answer_that_comes_a_tick_late_is_not_taken_for_the_next(rig):
     assert rig.bus.counters.late
 
 
+def test_an_answer_that_comes_a_tick_late_is_better_than_none(fast_rig):
+    late = []
+    fast_rig.port.damage = lambda data: late.append(data) or b""
+    assert fast_rig.tick() == []
+    sampled_ns = fast_rig.clock.now_ns()
+    fast_rig.port.damage = lambda data: late.append(data) or late[0]
+    for servo_id in IDS:
+        fast_rig.move(servo_id, 3000 + servo_id)
+    assert fast_rig.tick() == list(IDS)
+    assert [fast_rig.position(servo_id) for servo_id in IDS] == [2000 + i for i in IDS]
+    assert (fast_rig.states.time_ns < sampled_ns).all()
+    fast_rig.port.damage = lambda data: late[1] + data
+    assert fast_rig.tick() == list(IDS)
+    assert [fast_rig.position(servo_id) for servo_id in IDS] == [3000 + i for i in IDS]
+    assert fast_rig.bus.counters.late == 2
+
+
 def test_noise_before_the_answer_does_not_hide_it(fast_rig):
     fast_rig.port.damage = lambda data: b"\x00\xff\xff" + data
     assert fast_rig.tick() == list(IDS)

@@ -83,8 +83,9 @@ LEG = {
         Part("shank_frame", 0.045, (0, 0, -0.040), (0.024, 0.034, 0.060)),
         Part("ankle_pitch_servo", SERVO_MASS, (0, 0, -0.085), SERVO_SIZE, "servo"),
     ),
-    "ankle_pitch": (Part("ankle_roll_servo", SERVO_MASS + 0.015, (-0.008, 0, 0), _along_x,
-                         "servo"),),
+    "ankle_pitch": (
+        Part("ankle_roll_servo", SERVO_MASS + 0.015, (-0.008, 0, 0), _along_x, "servo"),
+    ),
 }
 """Parts carried by each leg joint; the sole is the last one."""
 SOLE_MASS = 0.125
@@ -94,23 +95,36 @@ SOLE_MASS = 0.125
 def _box(part: Part, name: str) -> str:
     half = " ".join(f"{edge / 2:.5g}" for edge in part.size)
     position = " ".join(f"{value:.5g}" for value in part.position)
-    return (f'<geom name="{name}" type="box" class="part" mass="{part.mass:.4g}" '
-            f'pos="{position}" size="{half}" material="{part.material}"/>')
+    return (
+        f'<geom name="{name}" type="box" class="part" mass="{part.mass:.4g}" '
+        f'pos="{position}" size="{half}" material="{part.material}"/>'
+    )
 
 
 def _sole(side: str) -> str:
     length = SOLE_FRONT - SOLE_REAR
-    return (f'<geom name="{side}_sole" type="box" class="sole" mass="{SOLE_MASS}" '
-            f'pos="{(SOLE_FRONT + SOLE_REAR) / 2:.5g} 0 '
-            f'{-ANKLE_HEIGHT + SOLE_THICKNESS / 2:.5g}" '
-            f'size="{length / 2:.5g} {SOLE_HALF_WIDTH:.5g} {SOLE_THICKNESS / 2:.5g}"/>')
+    return (
+        f'<geom name="{side}_sole" type="box" class="sole" mass="{SOLE_MASS}" '
+        f'pos="{(SOLE_FRONT + SOLE_REAR) / 2:.5g} 0 '
+        f'{-ANKLE_HEIGHT + SOLE_THICKNESS / 2:.5g}" '
+        f'size="{length / 2:.5g} {SOLE_HALF_WIDTH:.5g} {SOLE_THICKNESS / 2:.5g}"/>'
+    )
 
 
 def _leg(side: str, sign: int) -> list[str]:
-    places = {"hip_yaw": f"0 {sign * HIP_HALF_SPACING:.5g} 0", "knee": f"0 0 {-THIGH:.5g}",
-              "ankle_pitch": f"0 0 {-SHANK:.5g}"}
-    bodies = {"hip_yaw": "hip_yaw_link", "hip_roll": "hip_roll_link", "hip_pitch": "thigh",
-              "knee": "shank", "ankle_pitch": "ankle", "ankle_roll": "foot"}
+    places = {
+        "hip_yaw": f"0 {sign * HIP_HALF_SPACING:.5g} 0",
+        "knee": f"0 0 {-THIGH:.5g}",
+        "ankle_pitch": f"0 0 {-SHANK:.5g}",
+    }
+    bodies = {
+        "hip_yaw": "hip_yaw_link",
+        "hip_roll": "hip_roll_link",
+        "hip_pitch": "thigh",
+        "knee": "shank",
+        "ankle_pitch": "ankle",
+        "ankle_roll": "foot",
+    }
     lines = []
     for depth, (joint, axis) in enumerate(AXES.items()):
         pad = "  " * (3 + depth)
