@@ -16,6 +16,9 @@ from hil.interface import SIDES, Floats, Ints
 CORNER_SIGNS = np.array([[1, 1, -1], [1, -1, -1], [-1, 1, -1], [-1, -1, -1]], dtype=np.float64)
 """Lower corners of a sole box in half sizes: front_left, front_right, rear_left, rear_right."""
 
+FootPair = tuple[Floats, ...]
+"""One array a foot, left and right."""
+
 
 class BodyState(Protocol):
     """The part of an estimate, or of ground truth, that places the model."""
@@ -31,7 +34,7 @@ class BodyState(Protocol):
 class RobotModel:
     """Forward kinematics and mass properties of the described robot.
 
-    Arrays returned by properties are views or are reused: copy what must survive `set_state`.
+    Attributes of a state are views of MuJoCo's data: copy what must survive `set_state`.
     Feet are ordered left, right. World axes, metres, radians, seconds.
     """
 
@@ -56,10 +59,12 @@ class RobotModel:
         """Foot bodies, shape (2,)."""
         self.sole_geoms = self._ids(mujoco.mjtObj.mjOBJ_GEOM, [f.sole for f in feet], "sole")
         """Box soles, shape (2,)."""
-        self._corners: Floats = CORNER_SIGNS * self.model.geom_size[self.sole_geoms][:, None, :]
+        self.corner_offsets: Floats = CORNER_SIGNS * self.model.geom_size[self.sole_geoms][:, None]
+        """Lower corners of the soles in the frames of their boxes [m], shape (2, 4, 3)."""
         self._ankles = self._joint_ids([f.ankle for f in feet], "feet.*.ankle")
         self._knees = self._joint_ids([f"{side}_knee" for side in SIDES], "joints")
         self._hips = self._joint_ids([f"{side}_hip_pitch" for side in SIDES], "joints")
+        self._view_data()
         self.gravity = float(-self.model.opt.gravity[2])
         """[m/s²]"""
         self.mass = float(self.model.body_subtreemass[self.root_body])
@@ -79,51 +84,57 @@ class RobotModel:
         self.knee_offset = float(bend)
         """Knee angle at which thigh and shank lie on one line [rad]."""
 
+    def _view_data(self) -> None:
+        """Views of MuJoCo's arrays: they follow every state, and cost nothing in a tick."""
+        data, dof, qpos = self.data, self.base_dof, self._base_qpos
+        self._base = (data.qpos[qpos : qpos + 3], data.qpos[qpos + 3 : qpos + 7])
+        self._base_rates = (data.qvel[dof : dof + 3], data.qvel[dof + 3 : dof + 6])
+        self._qpos, self._qvel = data.qpos, data.qvel
+        self.com: Floats = data.subtree_com[self.root_body]
+        """Centre of mass of the whole body [m], shape (3,)."""
+        self.com_velocity: Floats = data.subtree_linvel[self.root_body]
+        """Velocity of the centre of mass [m/s], shape (3,)."""
+        self.root_position: Floats = data.xpos[self.root_body]
+        """Origin of the root body [m], shape (3,)."""
+        self.root_rotation: Floats = data.xmat[self.root_body].reshape(3, 3)
+        """Rotation matrix of the root body, base to world, shape (3, 3)."""
+        self.angular_velocities: Floats = data.cvel[:, :3]
+        """World angular velocity of every body [rad/s], shape (bodies, 3)."""
+        self.ankles: FootPair = tuple(data.xanchor[joint] for joint in self._ankles)
+        """Ankle point of each foot [m], each of shape (3,)."""
+        self.hips: FootPair = tuple(data.xanchor[joint] for joint in self._hips)
+        """Hip centre of each leg [m], each of shape (3,)."""
+        self.feet: FootPair = tuple(data.xmat[body].reshape(3, 3) for body in self.foot_bodies)
+        """Rotation matrix of each foot body, foot to world, each of shape (3, 3)."""
+        self.foot_twists: FootPair = tuple(data.cvel[body] for body in self.foot_bodies)
+        """Angular velocity [rad/s] and the velocity of the foot's point at `com` [m/s], (6,)."""
+        self.soles: FootPair = tuple(data.geom_xpos[geom] for geom in self.sole_geoms)
+        """Centre of each sole box [m], each of shape (3,)."""
+        self.sole_rotations: FootPair = tuple(
+            data.geom_xmat[geom].reshape(3, 3) for geom in self.sole_geoms
+        )
+        """Rotation matrix of each sole box, box to world, each of shape (3, 3)."""
+
     def set_state(self, state: BodyState) -> None:
         """Place the model at a state and compute its kinematics."""
-        base, data = self._base_qpos, self.data
-        data.qpos[base : base + 3] = state.base_position
-        data.qpos[base + 3 : base + 7] = state.base_orientation
-        data.qpos[self.qpos_addresses] = state.joint_position
-        base = self.base_dof
-        data.qvel[base : base + 3] = state.base_linear_velocity
-        data.qvel[base + 3 : base + 6] = state.base_angular_velocity
-        data.qvel[self.dof_addresses] = state.joint_velocity
+        position, orientation = self._base
+        position[:], orientation[:] = state.base_position, state.base_orientation
+        self._qpos[self.qpos_addresses] = state.joint_position
+        linear, angular = self._base_rates
+        linear[:], angular[:] = state.base_linear_velocity, state.base_angular_velocity
+        self._qvel[self.dof_addresses] = state.joint_velocity
         self._kinematics()
 
     def _kinematics(self) -> None:
-        mujoco.mj_kinematics(self.model, self.data)
-        mujoco.mj_comPos(self.model, self.data)
-        mujoco.mj_comVel(self.model, self.data)
-        mujoco.mj_subtreeVel(self.model, self.data)
+        model, data = self.model, self.data
+        mujoco.mj_kinematics(model, data)
+        mujoco.mj_comPos(model, data)
+        mujoco.mj_comVel(model, data)
+        mujoco.mj_subtreeVel(model, data)
 
     def _place_at_zero(self) -> None:
         self.data.qpos[:] = self.model.qpos0
         self._kinematics()
-
-    @property
-    def com(self) -> Floats:
-        """Centre of mass of the whole body [m], shape (3,)."""
-        value: Floats = self.data.subtree_com[self.root_body]
-        return value
-
-    @property
-    def com_velocity(self) -> Floats:
-        """Velocity of the centre of mass [m/s], shape (3,)."""
-        value: Floats = self.data.subtree_linvel[self.root_body]
-        return value
-
-    @property
-    def root_rotation(self) -> Floats:
-        """Rotation matrix of the root body, base to world, shape (3, 3)."""
-        value: Floats = self.data.xmat[self.root_body].reshape(3, 3)
-        return value
-
-    @property
-    def angular_velocities(self) -> Floats:
-        """World angular velocity of every body [rad/s], shape (bodies, 3)."""
-        value: Floats = self.data.cvel[:, :3]
-        return value
 
     @property
     def ankle_positions(self) -> Floats:
@@ -148,7 +159,7 @@ class RobotModel:
         """Lower corners of the soles [m], shape (2, 4, 3)."""
         rotations = self.data.geom_xmat[self.sole_geoms].reshape(2, 3, 3)
         centres = self.data.geom_xpos[self.sole_geoms][:, None, :]
-        value: Floats = centres + self._corners @ rotations.transpose(0, 2, 1)
+        value: Floats = centres + self.corner_offsets @ rotations.transpose(0, 2, 1)
         return value
 
     @property
@@ -161,19 +172,6 @@ class RobotModel:
         """Hips, knees and ankles of both legs [m], each of shape (2, 3)."""
         anchors = self.data.xanchor
         return anchors[self._hips], anchors[self._knees], anchors[self._ankles]
-
-    def gravity_torques(self) -> Floats:
-        """Torque of each joint that holds the weight beyond it [N·m], shape (n,).
-
-        τ_j = −axis_j · ((c_j − p_j) × m_j·g), with c_j and m_j the centre and mass of the
-        subtree beyond the joint and p_j its anchor; the base is taken as held.
-        """
-        bodies = self.model.jnt_bodyid[self.joint_ids]
-        lever = self.data.subtree_com[bodies] - self.data.xanchor[self.joint_ids]
-        weight = self.model.body_subtreemass[bodies] * self.gravity
-        axes = self.data.xaxis[self.joint_ids]
-        torques: Floats = weight * (axes[:, 0] * lever[:, 1] - axes[:, 1] * lever[:, 0])
-        return torques
 
     def _id(self, kind: int, name: str, key: str) -> int:
         found = int(mujoco.mj_name2id(self.model, kind, name))

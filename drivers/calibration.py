@@ -4,6 +4,7 @@ A calibration belongs to one individual robot and says where it comes from; a ru
 hardware refuses one whose robot, joints or feet do not match the description.
 """
 
+import datetime
 from pathlib import Path
 from typing import Literal
 
@@ -21,8 +22,8 @@ from hil.validation import Config, read_yaml, validate
 class Provenance(Config):
     """Where a calibration comes from."""
 
-    date: str
-    """ISO date."""
+    date: datetime.date
+    """ISO date, quoted or not."""
     method: str
     """How it was measured, or "ideal" for a virtual robot."""
     operator: str = ""

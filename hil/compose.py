@@ -160,6 +160,6 @@ def _initial_speed(request: RunRequest, description: RobotDescription) -> float:
 
 def _ideal_calibration(description: RobotDescription, data: Mapping[str, Any]) -> RobotCalibration:
     """What a virtual robot's calibration would find, but for the errors that its seed draws."""
-    provenance = {"date": datetime.now(UTC).date().isoformat(), "method": "ideal"}
+    provenance = {"date": datetime.now(UTC).date(), "method": "ideal"}
     content = {"robot": description.name, "provenance": provenance, **data}
     return validate(RobotCalibration, content, f"calibration of the virtual {description.name}")

@@ -48,8 +48,10 @@ def validate(model: type[ConfigT], data: Mapping[str, Any], file: str, prefix: s
         elif first["type"] == "missing":
             problem = "is missing"
         else:
-            got = repr(first["input"])
-            problem += f" (got {got if len(got) < 60 else got[:57] + '...'})"
+            problem = problem.removeprefix("Value error, ")
+            if not isinstance(first["input"], dict):
+                got = repr(first["input"])
+                problem += f" (got {got if len(got) < 60 else got[:57] + '...'})"
         raise DescriptionError(file, key or "(top)", problem) from error
 
 

@@ -26,6 +26,10 @@ THERMAL_RESISTANCE = 5.0
 """Winding to surroundings [K/W]; assumed."""
 THERMAL_TIME = 400.0
 """Time constant of the servo's case [s]; assumed."""
+TEMPERATURE_SUBSTEPS = 100
+"""Substeps between two looks at temperatures, which change in seconds."""
+_KEPT = 64
+"""Substeps whose duties and currents are kept before they are added to the totals."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,10 +70,12 @@ class ServoPhysics:
         supply: Supply,
         timestep: float,
         terminal_resistance: Floats,
+        terminal_voltage: Floats,
         encoder_phase: Floats,
     ) -> None:
         """`terminal_resistance`: the dcmotors' own, (n,), written when torque goes on or off.
 
+        `terminal_voltage`: their inputs in joint direction [V], (n,), written by `drive`.
         `encoder_phase`: where in a count each encoder's zero lies, (n,) [counts].
         """
         n = motors.direction.size
@@ -77,6 +83,7 @@ class ServoPhysics:
         self.supply = supply
         self._timestep = timestep
         self._terminal = terminal_resistance
+        self._terminal_voltage = terminal_voltage
         self._sign = motors.direction.astype(np.float64)
         self._scale = self._sign * COUNTS_PER_RADIAN
         self._zero = CENTRE_COUNTS + encoder_phase
@@ -85,21 +92,22 @@ class ServoPhysics:
         """Position goal [counts], shape (n,)."""
         self._p_gain, self._d_gain = np.zeros(n), np.zeros(n)
         self._limit, self._conductance = np.zeros(n), np.zeros(n)
+        self._gains = (b"", b"", b"")
         self._low, self._high, self._full = np.zeros(n), np.zeros(n), np.full(n, np.inf)
         self._has_d = self._stale = False
         self.counts = np.zeros(n)
         """Encoder reading [counts], shape (n,)."""
-        self.velocity = np.zeros(n)
-        """Speed in the servo's own direction [rad/s], shape (n,)."""
-        self.duty = np.zeros(n)
-        """Share of the supply on the terminals, in the servo's own direction, shape (n,)."""
-        self.current = np.zeros(n)
-        """Motor current in the servo's own direction [A], shape (n,)."""
+        self._joint_velocity = np.zeros(n)
+        self._back_emf = self._sign * motors.torque_constant
+        self._duties, self._currents = np.zeros((2, _KEPT, n))
+        self._rows = list(zip(self._duties, self._currents, strict=True))
+        self._kept = 0
+        self.duty, self.current = self._rows[0]
+        """Share of the supply on the terminals and motor current [A], both in the servo's own
+        direction, shape (n,); other arrays after the next `drive`."""
         self.voltage = supply.voltage
         """Supply at the servos [V]."""
-        self._terminal_voltage = np.zeros(n)
         self._work = np.zeros(n)
-        self._flags = np.zeros(n, dtype=np.bool_)
         self._reset_totals(n)
         self._terminal[:] = OPEN_CIRCUIT
 
@@ -109,6 +117,8 @@ class ServoPhysics:
         self._saturated = np.zeros(n)
         self._temperature = np.full(n, AMBIENT)
         self._cooled_at = 0
+        self._look_at = 0
+        self._degrees = np.full(n, AMBIENT)
         self._temperature_max = AMBIENT
         self._voltage_min = self.supply.voltage
         self._energy = 0.0
@@ -118,17 +128,23 @@ class ServoPhysics:
     def set_goals(self, goals: ServoGoals) -> None:
         """Adopt the goals of every servo; they act from the next call of `drive`."""
         self.goal[:] = goals.position
+        gains = (goals.p_gain.tobytes(), goals.d_gain.tobytes(), goals.pwm_limit.tobytes())
+        if gains == self._gains:
+            return
+        self._stale |= gains[1:] != self._gains[1:]
+        self._gains = gains
         np.divide(goals.p_gain, self.motors.gain_divisor * PWM_FULL, out=self._p_gain)
         np.multiply(goals.d_gain, D_PERIOD / (D_DIVISOR * PWM_FULL), out=self._d_gain)
         np.multiply(goals.pwm_limit, 1.0 / PWM_FULL, out=self._limit)
-        self._stale = True
 
     def set_gains(self, servo: int, p_gain: int, d_gain: int, pwm_limit: int) -> None:
         """Gains and PWM limit of one servo, as register values."""
+        self._gains = (b"", b"", b"")
         self._p_gain[servo] = p_gain / (self.motors.gain_divisor[servo] * PWM_FULL)
-        self._d_gain[servo] = d_gain * D_PERIOD / (D_DIVISOR * PWM_FULL)
-        self._limit[servo] = pwm_limit / PWM_FULL
-        self._stale = True
+        damping, limit = d_gain * D_PERIOD / (D_DIVISOR * PWM_FULL), pwm_limit / PWM_FULL
+        if damping != self._d_gain[servo] or limit != self._limit[servo]:
+            self._d_gain[servo], self._limit[servo] = damping, limit
+            self._stale = True
 
     def set_enabled(self, servo: int, on: bool) -> None:
         """Torque of one servo on, or its terminals open."""
@@ -139,6 +155,7 @@ class ServoPhysics:
         self._stale = True
 
     def _refresh(self) -> None:
+        self._account()
         np.multiply(self._limit, self.enabled, out=self._high)
         np.negative(self._high, out=self._low)
         self._full[:] = np.where(self._high > 0, self._high, np.inf)
@@ -148,52 +165,67 @@ class ServoPhysics:
     # One substep -----------------------------------------------------------------------------
 
     def drive(self, position: Floats, velocity: Floats) -> Floats:
-        """Terminal voltages in joint direction [V], (n,), for the substep that begins now."""
+        """Terminal voltages in joint direction [V], (n,), for the substep that begins now.
+
+        `velocity` is looked at until the next call. Whole arrays into fixed places, because this
+        runs in every substep.
+        """
         if self._stale:
             self._refresh()
-        duty = self.duty
-        np.multiply(position, self._scale, out=self.counts)
-        self.counts += self._zero
-        np.rint(self.counts, out=self.counts)
-        np.multiply(velocity, self._sign, out=self.velocity)
-        np.subtract(self.goal, self.counts, out=duty)
-        duty *= self._p_gain
+        if self._kept == _KEPT:
+            self._account()
+        duty, current = self.duty, self.current = self._rows[self._kept]
+        self._kept += 1
+        self._joint_velocity = velocity
+        counts, work = self.counts, self._work
+        np.multiply(position, self._scale, counts)
+        np.add(counts, self._zero, counts)
+        np.rint(counts, counts)
+        np.subtract(self.goal, counts, duty)
+        np.multiply(duty, self._p_gain, duty)
         if self._has_d:
             duty -= self._d_gain * (self.velocity * COUNTS_PER_RADIAN)
-        np.minimum(duty, self._high, out=duty)
-        np.maximum(duty, self._low, out=duty)
-        np.multiply(duty, self.voltage, out=self._work)
-        np.multiply(self._work, self._sign, out=self._terminal_voltage)
-        self._electrify()
+        np.minimum(duty, self._high, duty)
+        np.maximum(duty, self._low, duty)
+        np.multiply(duty, self.voltage, work)
+        np.multiply(work, self._sign, self._terminal_voltage)
+        np.multiply(velocity, self._back_emf, current)
+        np.subtract(work, current, current)
+        np.multiply(current, self._conductance, current)
+        self._load_supply(float(duty.dot(current)))
         return self._terminal_voltage
 
-    def _electrify(self) -> None:
-        """Currents, supply sag and totals; the servos' voltages are in `_work`."""
-        current, work = self.current, self._work
-        np.multiply(self.velocity, self.motors.torque_constant, out=current)
-        np.subtract(work, current, out=current)
-        current *= self._conductance
-        supply_current = float(self.duty.dot(current))
-        self._energy += self.voltage * supply_current
-        self.voltage = self.supply.voltage - self.supply.resistance * supply_current
-        if self.voltage < self._voltage_min:
-            self._voltage_min = self.voltage
-        np.multiply(current, current, out=work)
-        self._square_sum += work
-        np.abs(self.duty, out=work)
-        np.greater_equal(work, self._full, out=self._flags)
-        self._saturated += self._flags
-        self._substeps += 1
+    def _load_supply(self, current: float) -> None:
+        """Sag and energy of a supply that gives a current [A]."""
+        self._energy += self.voltage * current
+        self.voltage = voltage = self.supply.voltage - self.supply.resistance * current
+        if voltage < self._voltage_min:
+            self._voltage_min = voltage
+
+    def _account(self) -> None:
+        """Add what is kept to the totals."""
+        kept = self._kept
+        self._kept = 0
+        self._substeps += kept
+        self._square_sum += np.square(self._currents[:kept]).sum(axis=0)
+        self._saturated += (np.abs(self._duties[:kept]) >= self._full).sum(axis=0)
 
     # Readings --------------------------------------------------------------------------------
 
+    @property
+    def velocity(self) -> Floats:
+        """Speed in the servo's own direction [rad/s], shape (n,)."""
+        velocity: Floats = self._joint_velocity * self._sign
+        return velocity
+
     def torque(self) -> Floats:
         """Motor torque in joint direction, as the current tells it [N·m], shape (n,)."""
-        torque: Floats = self.current * self._sign * self.motors.torque_constant
+        torque: Floats = self.current * self._back_emf
         return torque
 
     def temperature(self) -> Floats:
         """Case temperatures [°C], shape (n,): copper loss r·i² on one thermal mass each."""
+        self._account()
         substeps = self._substeps - self._cooled_at
         if substeps > 0:
             mean_square = (self._square_sum - self._heated) / substeps
@@ -204,6 +236,13 @@ class ServoPhysics:
             self._cooled_at = self._substeps
             self._temperature_max = max(self._temperature_max, float(self._temperature.max()))
         return self._temperature
+
+    def degrees(self) -> Floats:
+        """Case temperatures as whole °C, shape (n,), looked at now and then."""
+        if self._substeps + self._kept >= self._look_at:
+            self._look_at = self._substeps + self._kept + TEMPERATURE_SUBSTEPS
+            self._degrees = np.rint(self.temperature())
+        return self._degrees
 
     def totals(self) -> ServoTotals:
         """Extremes and sums since the start."""

@@ -1,6 +1,7 @@
 """Attitude of the base: the IMU while it speaks, else a flat stance foot."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -62,12 +63,12 @@ class AttitudeFilter:
         correction = difference(measured, predicted)
         self.orientation = turned(predicted, self._gain * correction)
 
-    def choose_support(self, load: Floats) -> int:
+    def choose_support(self, loads: Sequence[float]) -> int:
         """The foot to hold flat: the present one until it carries less than a third."""
         present = self._support
-        if present >= 0 and load[present] > load.sum() / 3.0:
+        if present >= 0 and loads[present] > sum(loads) / 3.0:
             return present
-        return int(np.argmax(load))
+        return loads.index(max(loads))
 
     def update_from_foot(self, support: int, rotation: Floats, angular_velocity: Floats) -> None:
         """Hold the support foot flat and still.

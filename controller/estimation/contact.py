@@ -21,13 +21,24 @@ class ContactDetector:
         self._gain = 1.0 - math.exp(-dt / time) if time > 0.0 else 1.0
         self._on = config.on * weight
         self._off = config.off * weight
+        self._change: Floats = np.zeros((2, 4))
         self.force: Floats = np.zeros((2, 4))
         """Filtered corner forces [N], shape (2, 4)."""
         self.contact: Bools = np.zeros(2, dtype=np.bool_)
         """Whether each foot is on the ground, shape (2,)."""
+        self.corners: list[list[float]] = self.force.tolist()
+        """`force` as plain numbers."""
+        self.loads = [0.0, 0.0]
+        """Sum of each foot's corners [N]."""
 
     def update(self, force: Floats) -> None:
         """Take the corner forces of one tick [N], shape (2, 4)."""
-        self.force += self._gain * (force - self.force)
-        load = self.force.sum(axis=1)
-        self.contact[:] = np.where(self.contact, load > self._off, load > self._on)
+        change = self._change
+        np.subtract(force, self.force, out=change)
+        change *= self._gain
+        self.force += change
+        self.corners = self.force.tolist()
+        contact = self.contact
+        for foot, (a, b, c, d) in enumerate(self.corners):
+            load = self.loads[foot] = a + b + c + d
+            contact[foot] = load > (self._off if contact[foot] else self._on)

@@ -23,19 +23,36 @@ class JointStateFilter:
         """[rad/s], shape (n,)."""
         self._sample: Floats = np.zeros(joints)
         self._sample_time = np.full(joints, -np.inf)
+        self._age, self._taken, self._elapsed, self._change, self._gain = np.zeros((5, joints))
+        self._fresh = np.zeros(joints, dtype=np.bool_)
 
     def update(self, frame: SensorFrame) -> None:
         """Take one frame. Joints never received keep the frame's value and velocity 0."""
-        age = frame.joint_age_ns * 1e-9
-        taken = frame.time_ns * 1e-9 - age
-        elapsed = taken - self._sample_time
-        fresh = frame.joint_valid & (elapsed > 0.0)
-        step = np.where(fresh, elapsed, np.inf)
-        rate = (frame.joint_position - self._sample) / step
-        gain = np.where(np.isfinite(step), 1.0 - np.exp(-step / self._time), 0.0)
-        self.velocity += gain * (rate - self.velocity)
+        age, velocity = self._age, self.velocity
+        np.multiply(frame.joint_age_ns, 1e-9, out=age)
+        self._take_samples(frame)
+        if age.max() > self._coast:
+            velocity[age > self._coast] = 0.0
+            np.minimum(age, self._coast, out=age)
+        np.multiply(velocity, age, out=self.position)
+        self.position += frame.joint_position
+
+    def _take_samples(self, frame: SensorFrame) -> None:
+        """Move the velocities of the joints that have a new sample."""
+        taken, elapsed, fresh = self._taken, self._elapsed, self._fresh
+        change, gain = self._change, self._gain
+        np.subtract(frame.time_ns * 1e-9, self._age, out=taken)
+        np.subtract(taken, self._sample_time, out=elapsed)
+        np.greater(elapsed, 0.0, out=fresh)
+        fresh &= frame.joint_valid
+        np.copyto(elapsed, np.inf, where=~fresh)  # no change, and no division by zero
+        np.subtract(frame.joint_position, self._sample, out=change)
+        change /= elapsed
+        change -= self.velocity
+        np.divide(elapsed, -self._time, out=gain)
+        np.exp(gain, out=gain)
+        np.subtract(1.0, gain, out=gain)
+        change *= gain
+        np.add(self.velocity, change, out=self.velocity, where=fresh)
         np.copyto(self._sample, frame.joint_position, where=fresh)
         np.copyto(self._sample_time, taken, where=fresh)
-        silent = age > self._coast
-        np.copyto(self.velocity, 0.0, where=silent)
-        self.position[:] = frame.joint_position + self.velocity * np.minimum(age, self._coast)

@@ -1,5 +1,7 @@
 """The IMU's constant tilt error, learnt from soles that lie flat on the ground."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from controller.estimation.config import TrimConfig
@@ -25,18 +27,30 @@ class LevelTrim:
         self.rotation: Floats = np.zeros(3)
         """t [rad], base axes, shape (3,)."""
 
-    def update(self, attitude: Floats, feet: Floats, force: Floats) -> None:
-        """Learn from one tick: trimmed attitude (3, 3), foot orientations (2, 3, 3), both to the
-        world, and filtered corner forces [N], (2, 4)."""
-        flat = (np.count_nonzero(force > self._corner, axis=1) >= 3) & (
-            force.sum(axis=1) > self._foot
-        )
-        count = int(np.count_nonzero(flat))
+    def update(
+        self, attitude: Floats, feet: Sequence[Floats], corners: Sequence[Sequence[float]]
+    ) -> None:
+        """Learn from one tick: trimmed attitude (3, 3), foot orientations, (3, 3) each, all to the
+        world, and filtered corner forces [N], four a foot."""
+        count, up_x, up_y = 0, 0.0, 0.0
+        for foot, forces in zip(feet, corners, strict=True):
+            if self._lies_flat(forces):
+                x, y, _ = foot[:, 2].tolist()
+                count, up_x, up_y = count + 1, up_x + x, up_y + y
         if not count:
             return
         self._ticks += 1
-        upward = flat @ feet[:, :, 2] / count
-        missing = np.array([upward[1], -upward[0], 0.0]) @ attitude
-        gain = max(1.0 / self._ticks, self._least_gain)
-        trimmed = self.rotation + gain * missing
-        self.rotation = np.minimum(np.maximum(trimmed, -self._bound), self._bound)
+        gain = max(1.0 / self._ticks, self._least_gain) / count
+        first, second, _ = attitude.tolist()
+        bound = self._bound
+        self.rotation[:] = [
+            max(-bound, min(t + gain * (up_y * a - up_x * b), bound))
+            for t, a, b in zip(self.rotation.tolist(), first, second, strict=True)
+        ]
+
+    def _lies_flat(self, forces: Sequence[float]) -> bool:
+        corner = self._corner
+        if sum(forces) <= self._foot:
+            return False
+        a, b, c, d = forces
+        return (a > corner) + (b > corner) + (c > corner) + (d > corner) >= 3

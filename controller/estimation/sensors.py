@@ -1,5 +1,7 @@
 """The state of a robot from its own sensors: encoders, IMU and foot corners."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from controller.estimation.attitude import AttitudeFilter
@@ -33,52 +35,54 @@ class SensorEstimator:
         self._joints = JointStateFilter(n, config.velocity_time, config.coast_time)
         self._attitude = AttitudeFilter(config, dt)
         self._trim = LevelTrim(config.trim, self._model.weight, dt)
-        self._odometry = CornerOdometry(self._model.weight, dt, config.trust_time)
-        self.estimate = empty_estimate(n)
+        self._odometry = CornerOdometry(self._model, dt, config.trust_time)
+        self.estimate = self._own_estimate(n)
+        self._at_origin = replace(
+            self.estimate, base_position=np.zeros(3), base_linear_velocity=np.zeros(3)
+        )
+        """The estimate with its base at rest at the origin; the other arrays are shared."""
+
+    def _own_estimate(self, joints: int) -> Estimate:
+        """An estimate whose joints and loads are the filters' own arrays: nothing to copy."""
+        return replace(
+            empty_estimate(joints),
+            joint_position=self._joints.position,
+            joint_velocity=self._joints.velocity,
+            foot_force=self._contact.force,
+            contact=self._contact.contact,
+        )
 
     def update(self, frame: SensorFrame) -> Estimate:
         """The estimate at the frame's time. The returned object is reused by the next call."""
-        estimate, model = self.estimate, self._model
-        self._contact.update(frame.foot_force)
+        estimate, model, contact = self.estimate, self._model, self._contact
+        contact.update(frame.foot_force)
         self._joints.update(frame)
         estimate.time_ns = frame.time_ns
-        estimate.joint_position[:] = self._joints.position
-        estimate.joint_velocity[:] = self._joints.velocity
-        estimate.base_position[:] = 0.0
-        estimate.base_linear_velocity[:] = 0.0
         self._update_attitude(frame)
-        model.set_state(estimate)
-        contact = self._contact
-        self._odometry.update(
-            model.corner_positions,
-            model.data.cvel[model.foot_bodies],
-            model.com,
-            contact.force,
-            contact.contact,
-        )
-        self._trim.update(model.root_rotation, model.foot_rotations, contact.force)
-        estimate.base_position[:] = self._odometry.position
-        estimate.base_linear_velocity[:] = self._odometry.velocity
-        np.add(model.com, self._odometry.position, out=estimate.com)
-        np.add(model.com_velocity, self._odometry.velocity, out=estimate.com_velocity)
-        estimate.foot_force[:] = self._contact.force
-        estimate.contact[:] = self._contact.contact
+        model.set_state(self._at_origin)
+        odometry = self._odometry
+        odometry.update(contact.corners, contact.contact)
+        self._trim.update(model.root_rotation, model.feet, contact.corners)
+        estimate.base_position[:] = odometry.position
+        estimate.base_linear_velocity[:] = odometry.velocity
+        np.add(model.com, estimate.base_position, out=estimate.com)
+        np.add(model.com_velocity, estimate.base_linear_velocity, out=estimate.com_velocity)
         estimate.supply_voltage = supply_voltage(frame)
         return estimate
 
     def _update_attitude(self, frame: SensorFrame) -> None:
-        if self._attitude.hears_imu(frame):
-            self._attitude.update_from_imu(frame)
-            self._take_attitude(turned(self._attitude.orientation, self._trim.rotation))
+        attitude = self._attitude
+        if attitude.hears_imu(frame):
+            attitude.update_from_imu(frame)
+            self._take_attitude(turned(attitude.orientation, self._trim.rotation))
             return
         estimate, model = self.estimate, self._model
         estimate.base_orientation[:] = (1.0, 0.0, 0.0, 0.0)
         estimate.base_angular_velocity[:] = 0.0
-        model.set_state(estimate)
-        support = self._attitude.choose_support(self._contact.force.sum(axis=1))
-        turning = model.angular_velocities[model.foot_bodies[support]]
-        self._attitude.update_from_foot(support, model.foot_rotations[support], turning)
-        self._take_attitude(self._attitude.orientation)
+        model.set_state(self._at_origin)
+        support = attitude.choose_support(self._contact.loads)
+        attitude.update_from_foot(support, model.feet[support], model.foot_twists[support][:3])
+        self._take_attitude(attitude.orientation)
 
     def _take_attitude(self, orientation: Floats) -> None:
         self.estimate.base_orientation[:] = orientation
@@ -87,7 +91,7 @@ class SensorEstimator:
 
 def supply_voltage(frame: SensorFrame) -> float:
     """Mean voltage over the servos that report one [V]; NaN where none does."""
-    total = float(frame.joint_voltage.sum())
+    total = float(np.add.reduce(frame.joint_voltage))
     if total == total:
         return total / frame.joint_voltage.size
     known = frame.joint_voltage[np.isfinite(frame.joint_voltage)]

@@ -1,6 +1,7 @@
 """Ground truth in the shape of an estimate, for experiments and robots that exist in simulation."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from controller.estimation.config import ContactConfig
 from controller.estimation.contact import ContactDetector
@@ -19,7 +20,12 @@ class TruthEstimator:
     def __init__(self, description: RobotDescription, truth: Callable[[], Truth]) -> None:
         self._truth = truth
         self._contact = ContactDetector(EXACT_CONTACT, RobotModel(description).weight, 1.0)
-        self.estimate = empty_estimate(len(description.joints))
+        contact = self._contact
+        self.estimate = replace(
+            empty_estimate(len(description.joints)),
+            foot_force=contact.force,
+            contact=contact.contact,
+        )
 
     def update(self, frame: SensorFrame) -> Estimate:
         """The true state, at the frame's time. The returned object is reused by the next call."""
@@ -34,8 +40,6 @@ class TruthEstimator:
         estimate.com[:] = truth.com
         estimate.com_velocity[:] = truth.com_velocity
         self._contact.update(truth.foot_force)
-        estimate.foot_force[:] = self._contact.force
-        estimate.contact[:] = self._contact.contact
         estimate.toe_force[:] = truth.toe_force
         estimate.supply_voltage = supply_voltage(frame)
         return estimate

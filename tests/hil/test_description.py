@@ -58,6 +58,7 @@ def test_a_mistake_names_file_key_and_choices(tmp_path, change, key, says):
     assert message.startswith(f"{path}: {key}: ")
     assert says in message
     assert "\n" not in message
+    assert "{" not in message
 
 
 def test_broken_yaml_is_one_line(tmp_path):
