@@ -3,14 +3,15 @@
 Ratios of one run on one machine can be compared with those of another; milliseconds cannot.
 """
 
-import importlib.util
 import tempfile
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from drivers.dynamixel.hot_path_bench import measure_hot_path
 from hil.compose import build
 from hil.cycle import TickRecord
 from hil.interface import Floats
@@ -110,7 +111,7 @@ def measure(case: Case, duration_s: float) -> list[Row]:
     with tempfile.TemporaryDirectory() as folder:
         truth = session.world is not None
         recorder = Recorder(Path(folder), make_meta(session), truth=truth, progress=False)
-        with recorder:
+        with closing(session), recorder:
             session.backend.open()
             outcome = Loop(session, (stopwatch, recorder)).run()
     period_ms = 1e3 / 300
@@ -130,13 +131,7 @@ def measure(case: Case, duration_s: float) -> list[Row]:
 
 
 def measure_driver() -> list[Row]:
-    """The servo hot path against the SDK, from a checkout; nothing from an installed wheel."""
-    path = Path(__file__).resolve().parent.parent / "benchmarks" / "driver_hot_path.py"
-    spec = importlib.util.spec_from_file_location("driver_hot_path", path)
-    if not path.is_file() or spec is None or spec.loader is None:
-        return []
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
+    """The servo hot path against the SDK."""
     return [
         Row(
             "driver, CPU",
@@ -145,7 +140,7 @@ def measure_driver() -> list[Row]:
             "µs",
             DRIVER_RATIO * row.sdk_classic_us,
         )
-        for row in module.run()
+        for row in measure_hot_path()
     ]
 
 

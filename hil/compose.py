@@ -1,6 +1,7 @@
 """The composition root: the one module that puts controller, drivers and simulation together."""
 
 from collections.abc import Mapping
+from contextlib import ExitStack
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -8,6 +9,7 @@ from typing import Any
 from controller.estimation.sensors import SensorEstimator
 from controller.estimation.truth import TruthEstimator
 from controller.walking.servo_walker import ServoWalker
+from controller.walking.stabilizer.model_comparison import ModelComparison
 from controller.walking.torque_walker import TorqueWalker
 from drivers.calibration import RobotCalibration, load_calibration
 from drivers.dynamixel.gain_mapping import GainMapping
@@ -16,7 +18,7 @@ from hil.clock import MonotonicClock
 from hil.description import RobotDescription
 from hil.errors import DescriptionError, InputError
 from hil.interface import Controller, Estimator, World
-from hil.request import RunRequest
+from hil.request import DEFAULT_SOLVER, RunRequest
 from hil.robot_files import load_robot
 from hil.session import Session
 from hil.validation import validate
@@ -38,6 +40,12 @@ def build(request: RunRequest) -> Session:
     if resolved.realtime:
         return _on_terminals(resolved, description)
     return _in_lockstep(resolved, description)
+
+
+def model_comparison(request: RunRequest) -> ModelComparison:
+    """The stabilizer's reduced models of a resolved request's robot, side by side."""
+    description = load_robot(request.robot, request.overrides)
+    return ModelComparison(description, _rate(request))
 
 
 def serve_virtual(
@@ -63,7 +71,7 @@ def _on_mujoco(request: RunRequest, description: RobotDescription) -> Session:
         motors = mapping.motor_parameters()
     plant = Plant(description, rate_hz, seed, motors, velocity)
     backend = MujocoBackend(description, plant, mapping, rate_hz, seed)
-    return _session(request, description, backend, plant)
+    return _session(request, description, backend, plant, figures=plant.figures)
 
 
 def _in_lockstep(request: RunRequest, description: RobotDescription) -> Session:
@@ -72,29 +80,33 @@ def _in_lockstep(request: RunRequest, description: RobotDescription) -> Session:
     nominal = GainMapping(description, _ideal_calibration(description, {}))
     plant = Plant(description, rate_hz, seed, nominal.motor_parameters())
     robot = VirtualRobot(description, plant, seed, rate_hz)
-    robot.start()
     calibration = _ideal_calibration(description, robot.calibration_data)
     mapping = GainMapping(description, calibration)
     backend = BusBackend(description, robot.clock, rate_hz, robot.port_urls, calibration, mapping)
-    return _session(request, description, backend, plant, closers=(robot.close,))
+    session = _session(
+        request, description, backend, plant, figures=plant.figures, closers=(robot.close,)
+    )
+    robot.start()
+    return session
 
 
 def _on_terminals(request: RunRequest, description: RobotDescription) -> Session:
     """The dry run in real time: the virtual robot is another process behind ptys."""
     rate_hz = _rate(request)
-    server = ServerProcess(request.robot, rate_hz, request.seed, request.overrides)
-    try:
+    with ExitStack() as stack:
+        server = ServerProcess(request.robot, rate_hz, request.seed, request.overrides)
+        stack.callback(server.close)
         world = RemoteWorld(server.control)
-    except BaseException:
-        server.close()
-        raise
-    calibration = _ideal_calibration(description, world.calibration_data)
-    mapping = GainMapping(description, calibration)
-    backend = BusBackend(
-        description, MonotonicClock(), rate_hz, server.port_urls, calibration, mapping
+        stack.callback(world.close)
+        calibration = _ideal_calibration(description, world.calibration_data)
+        mapping = GainMapping(description, calibration)
+        backend = BusBackend(
+            description, MonotonicClock(), rate_hz, server.port_urls, calibration, mapping
+        )
+        closing = stack.pop_all()
+    return _session(
+        request, description, backend, world, figures=world.figures, closers=(closing.close,)
     )
-    closers = (world.close, server.close)
-    return _session(request, description, backend, world, closers=closers)
 
 
 def _on_real_bus(request: RunRequest, description: RobotDescription) -> Session:
@@ -143,8 +155,15 @@ def _controller(request: RunRequest, description: RobotDescription) -> Controlle
     rate_hz, ankle_limit = _rate(request), bool(request.ankle_limit)
     if description.actuation == "servo":
         return ServoWalker(description, rate_hz, ankle_limit)
-    speed = _initial_speed(request, description)
-    return TorqueWalker(description, rate_hz, request.pd or "explicit", ankle_limit, speed)
+    return TorqueWalker(
+        description,
+        rate_hz,
+        request.pd or "explicit",
+        ankle_limit,
+        _initial_speed(request, description),
+        bool(request.stabilizer),
+        request.stabilizer_solver or DEFAULT_SOLVER,
+    )
 
 
 def _rate(request: RunRequest) -> int:

@@ -27,12 +27,15 @@ class JointLimits:
         torque = [joint.torque_limit for joint in joints]
         position = np.array([joint.range for joint in joints])
         # Rows in the order of JointCommand's fields, so that one operation clamps them all.
-        none, all_ = [0.0] * n, [np.inf] * n
+        # Gains have no limit but the largest number, so that inf is one that was changed.
+        none, all_ = [0.0] * n, [np.finfo(np.float64).max] * n
         self._low = np.array(
             [position[:, 0], np.negative(velocity), none, none, np.negative(torque)]
         )
         self._high = np.array([position[:, 1], velocity, all_, all_, torque])
         self._asked, self._clamped = np.zeros((5, n)), np.zeros((5, n))
+        self._changed = np.zeros((5, n), dtype=np.bool_)
+        self._flat = self._asked.ravel()
         self._out = JointCommand(*self._clamped)
         self.flags: Ints = np.zeros(n, dtype=np.int64)
         """`Limit` flags that the last `apply` raised, shape (n,)."""
@@ -42,18 +45,19 @@ class JointLimits:
 
         Raises InvalidCommandError, naming the joint, if a value is not finite.
         """
-        asked, clamped = self._asked, self._clamped
-        asked[0], asked[1], asked[2] = command.position, command.velocity, command.stiffness
-        asked[3], asked[4] = command.damping, command.torque
-        if not np.isfinite(asked).all():
-            raise InvalidCommandError(self._complaint())
-        np.minimum(np.maximum(asked, self._low, out=clamped), self._high, out=clamped)
-        changed = clamped != asked
-        if changed.any():
-            changed[0] &= asked[2] > 0.0
-            np.dot(FLAGS, changed, out=self.flags)
-        else:
+        asked, clamped, changed = self._asked, self._clamped, self._changed
+        parts = (command.position, command.velocity, command.stiffness, command.damping)
+        np.concatenate((*parts, command.torque), out=self._flat)
+        np.maximum(asked, self._low, out=clamped)
+        np.minimum(clamped, self._high, out=clamped)
+        np.not_equal(clamped, asked, out=changed)
+        if not np.count_nonzero(changed):
             self.flags[:] = 0
+            return self._out
+        if not np.isfinite(asked).all():  # what is not finite is never inside the limits
+            raise InvalidCommandError(self._complaint())
+        changed[0] &= asked[2] > 0.0
+        np.dot(FLAGS, changed, out=self.flags)
         return self._out
 
     def _complaint(self) -> str:

@@ -1,7 +1,7 @@
 """The control loop: start-up, walking ticks, one way out.
 
 Whatever ends a run (its time, a fall, a lost servo, an exception of any part, a signal), the
-robot is stopped softly, its torque is switched off and read back, and its backend is closed.
+robot is stopped softly, its torque is switched off and read back, and its session is closed.
 """
 
 from dataclasses import dataclass, field
@@ -36,7 +36,7 @@ class Outcome:
 
 
 class Loop:
-    """Runs one session whose backend is open, and closes it."""
+    """Runs one session whose backend is open, and closes the session."""
 
     def __init__(self, session: Session, sinks: tuple[Sink, ...]) -> None:
         self.outcome = Outcome()
@@ -55,7 +55,7 @@ class Loop:
                 self._make_safe_after(error)
                 raise
             with self._signals.shielded():
-                stop_and_close(self._session.backend)
+                stop_and_close(self._session)
         return self.outcome
 
     def _run_to_the_end(self) -> None:
@@ -106,6 +106,6 @@ class Loop:
         """Stop and close; a second error is noted on the first one and does not replace it."""
         try:
             with self._signals.shielded():
-                stop_and_close(self._session.backend)
+                stop_and_close(self._session)
         except Exception as second:
             error.add_note(str(second) if isinstance(second, StrideError) else repr(second))

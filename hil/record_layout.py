@@ -6,10 +6,12 @@ padding is needed. The same layout is written into the MCAP file as a ROS 2 mess
 from which any reader (`hil.recording`, Foxglove, the ROS tools) finds every field.
 """
 
+import math
 import re
+from collections.abc import Callable
 from dataclasses import fields
 from operator import attrgetter
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -27,6 +29,11 @@ from hil.timing import TickTiming
 
 CDR_HEADER = b"\x00\x01\x00\x00"
 """Encapsulation: plain CDR, little-endian."""
+
+WORD = 8
+"""Size of a float or an integer [bytes]."""
+
+Getter = Callable[[TickRecord], tuple[Any, ...]]
 
 ROS_TYPES = {"f": "float64", "i": "int64", "b": "bool"}
 NUMPY_TYPES = {"float64": "<f8", "int64": "<i8", "bool": "?"}
@@ -49,9 +56,18 @@ def topics(n: int, *, truth: bool) -> dict[str, Any]:
 
 
 def tick_dtype(n: int, *, truth: bool) -> np.dtype[np.void]:
-    """The record of one tick: `time_ns`, `time_s` and one nested record a topic."""
-    nested = [(name, topic_dtype(part)) for name, part in topics(n, truth=truth).items()]
-    return np.dtype([("time_ns", "<i8"), ("time_s", "<f8"), *nested])
+    """The record of one tick: `time_ns`, `time_s` and one nested record a topic.
+
+    Every topic begins at a multiple of eight bytes, so that a tick is a row of words.
+    """
+    columns: list[tuple[str, Any]] = [("time_ns", np.dtype("<i8")), ("time_s", np.dtype("<f8"))]
+    columns += [(name, topic_dtype(part)) for name, part in topics(n, truth=truth).items()]
+    offsets, end = [], 0
+    for _, layout in columns:
+        offsets.append(end)
+        end += -(-layout.itemsize // WORD) * WORD
+    names, formats = zip(*columns, strict=True)
+    return np.dtype({"names": names, "formats": formats, "offsets": offsets, "itemsize": end})
 
 
 def topic_dtype(part: Any) -> np.dtype[np.void]:
@@ -90,24 +106,79 @@ def parse_definition(text: str) -> np.dtype[np.void]:
 
 
 class TickWriter:
-    """Copies ticks into rows of an array of `tick_dtype`, one assignment a field."""
+    """Copies ticks into rows of an array of `tick_dtype`.
+
+    All arrays of floats are joined in one operation, and so are all those of integers; single
+    floats and integers are copied as one list each. A last operation puts these words into the
+    order of the row. Booleans, which are few, follow one by one.
+    """
 
     def __init__(self, rows: np.ndarray[Any, np.dtype[np.void]]) -> None:
-        self._time_ns, self._time_s = rows["time_ns"], rows["time_s"]
-        parts = [name for name in rows.dtype.names or () if rows.dtype[name].names]
-        self._parts = []
-        for part in parts:
-            names = rows.dtype[part].names or ()
-            columns = [rows[part][name] for name in names]
-            self._parts.append((attrgetter(part), attrgetter(*names), columns))
+        words = rows.dtype.itemsize // WORD
+        self._rows = np.frombuffer(rows, np.int64).reshape(len(rows), words)
+        self._buffer = np.zeros(words + 1, dtype=np.int64)
+        self._order = np.full(words, words)  # the last word of the buffer stays 0
+        self._filled = 0
+        columns = _columns(rows.dtype)
+        floats = [column for column in columns if column.dtype == np.float64]
+        whole = [column for column in columns if column.dtype == np.int64]
+        flags = [column for column in columns if column.dtype == np.bool_]
+        self._arrays = [self._area(kind, single=False) for kind in (floats, whole)]
+        self._singles = [self._area(kind, single=True) for kind in (floats, whole)]
+        self._flags = _getter(flags)
+        self._flag_columns = [_nested(rows, column.name) for column in flags]
+
+    def _area(self, columns: list["_Column"], *, single: bool) -> tuple[Getter, Any]:
+        """How to get some fields of one type, and the part of the buffer that takes them."""
+        chosen = [column for column in columns if (column.shape == ()) is single]
+        begin = self._filled
+        for column in chosen:
+            size = math.prod(column.shape)
+            words = self._filled + np.arange(size)
+            self._order[column.word : column.word + size] = words
+            self._filled += size
+        return _getter(chosen), self._buffer[begin : self._filled].view(columns[0].dtype)
 
     def write(self, row: int, record: TickRecord) -> None:
         """Fill one row."""
-        self._time_ns[row] = record.time_ns
-        self._time_s[row] = record.time_s
-        for part, values, columns in self._parts:
-            for column, value in zip(columns, values(part(record)), strict=True):
-                column[row] = value
+        for values, area in self._arrays:
+            np.concatenate(values(record), axis=None, out=area)
+        for values, area in self._singles:
+            area[:] = values(record)
+        np.take(self._buffer, self._order, out=self._rows[row], mode="clip")
+        for column, value in zip(self._flag_columns, self._flags(record), strict=True):
+            column[row] = value
+
+
+class _Column(NamedTuple):
+    """One field of a tick's row."""
+
+    name: str
+    """Dotted, as an attribute of TickRecord."""
+    dtype: np.dtype[Any]
+    word: int
+    """Where its first word is in the row; of no use for a boolean."""
+    shape: tuple[int, ...]
+
+
+def _columns(tick: np.dtype[np.void]) -> list[_Column]:
+    """Every field of a tick, those of topics included."""
+    found = []
+    for name, (layout, offset, *_) in (tick.fields or {}).items():
+        inner = layout.fields or {"": (layout, 0)}
+        for key, (dtype, start, *_) in inner.items():
+            path = f"{name}.{key}" if key else name
+            found.append(_Column(path, dtype.base, (offset + start) // WORD, dtype.shape))
+    return found
+
+
+def _nested(rows: np.ndarray[Any, np.dtype[np.void]], path: str) -> np.ndarray[Any, Any]:
+    topic, _, name = path.partition(".")
+    return rows[topic][name] if name else rows[topic]
+
+
+def _getter(columns: list[_Column]) -> Getter:
+    return attrgetter(*(column.name for column in columns))
 
 
 def _blank_estimate(n: int) -> Estimate:

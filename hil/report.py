@@ -9,6 +9,7 @@ from hil.loop import Outcome
 from hil.request import RunRequest
 from hil.trace import Trace
 
+SIGNIFICANT_DIGITS = 6
 COUNTER_KEYS = ("bus_crc_errors", "bus_timeouts", "bus_stale_frames")
 FIGURE_KEYS = (
     "bus_utilisation_pct",
@@ -35,7 +36,7 @@ def make_report(
     rate_hz = request.rate_hz or 0
     iterations, limited = trace.stabilizer_iterations, trace.stabilizer_limited
     use = request.stabilizer and len(trace) > 0
-    return {
+    figures = {
         "robot": robot,
         "backend": request.backend,
         "bus": request.bus,
@@ -58,6 +59,12 @@ def make_report(
         **{key: _finite(statistics.get(key)) for key in FIGURE_KEYS},
         "faults": [asdict(fault) for fault in outcome.faults],
     }
+    return {key: _rounded(value) for key, value in figures.items()}
+
+
+def _rounded(value: Any) -> Any:
+    """A float without the dust of its computation; everything else as it is."""
+    return float(f"{value:.{SIGNIFICANT_DIGITS}g}") if isinstance(value, float) else value
 
 
 def _finite(value: float | None) -> float | None:

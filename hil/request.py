@@ -14,6 +14,8 @@ BackendName = Literal["mujoco", "bus"]
 BusName = Literal["virtual", "real"]
 EstimatorName = Literal["sensors", "truth"]
 PdName = Literal["explicit", "implicit"]
+StabilizerSolverName = Literal["cma", "linear", "scan"]
+DEFAULT_SOLVER: StabilizerSolverName = "linear"
 
 OPTIONS = {"rate_hz": "--rate", "duration_s": "--duration", "overrides": "--set"}
 """Command line options whose name is not that of their field."""
@@ -26,9 +28,9 @@ class RunRequest(Config):
     """Name of a shipped robot or a YAML file."""
     backend: BackendName | None = None
     bus: BusName | None = None
-    """Only with the bus backend; virtual where the command line is silent."""
+    """Only with the bus backend; where the command line is silent, real if live, else virtual."""
     live: bool = False
-    """The operator says that real servos may move."""
+    """The operator says that real servos may move: the real bus, and nothing else."""
     rate_hz: PositiveInt | None = Field(default=None, le=2000)
     duration_s: PositiveFloat = 20.0
     """From the first walking tick [s]."""
@@ -39,6 +41,7 @@ class RunRequest(Config):
     estimator: EstimatorName | None = None
     pd: PdName | None = None
     stabilizer: bool | None = None
+    stabilizer_solver: StabilizerSolverName | None = None
     ankle_limit: bool | None = None
     overrides: tuple[str, ...] = ()
     """`KEY=VALUE` changes of the description."""
@@ -69,12 +72,20 @@ class RunRequest(Config):
         """Whether time is the simulation's own: nothing then waits for the wall clock."""
         return not self.realtime and self.bus != "real"
 
+    @model_validator(mode="before")
+    @classmethod
+    def _live_is_real(cls, values: Any) -> Any:
+        if isinstance(values, dict) and values.get("live") and values.get("bus") is None:
+            return {**values, "bus": "real"}
+        return values
+
     @model_validator(mode="after")
     def _consistent(self) -> Self:
         if self.bus == "real" and not self.live:
             raise ValueError("--bus real moves real servos: add --live to say that you mean it")
-        if self.live and self.bus != "real":
-            raise ValueError("--live needs --bus real: it never falls back to a simulated robot")
+        if self.live and (self.bus != "real" or self.backend == "mujoco"):
+            other = "--backend mujoco" if self.backend == "mujoco" else "--bus virtual"
+            raise ValueError(f"--live moves real servos: it does not go with {other}")
         if self.bus is not None and self.backend == "mujoco":
             raise ValueError("--bus belongs to --backend bus, not to --backend mujoco")
         if self.bus == "real" and self.estimator == "truth":
@@ -93,6 +104,13 @@ class RunRequest(Config):
             raise InputError(f"{description.name} has no servo bus: use --backend mujoco")
         if self.pd is not None and description.actuation == "servo":
             raise InputError(f"--pd is for torque robots; {description.name} has servos")
+        stabilizer = defaults.stabilizer if self.stabilizer is None else self.stabilizer
+        if stabilizer and description.actuation == "servo":
+            raise InputError(
+                f"--stabilizer adds torques, for torque robots; {description.name} has servos"
+            )
+        if self.stabilizer_solver is not None and not stabilizer:
+            raise InputError("--stabilizer-solver needs --stabilizer")
         if self.realtime and backend == "mujoco":
             raise InputError("--realtime is for the bus backend; --backend mujoco has no deadlines")
         filled = {
@@ -101,7 +119,8 @@ class RunRequest(Config):
             "rate_hz": self.rate_hz or defaults.rate_hz,
             "estimator": self.estimator or defaults.estimator,
             "pd": self.pd or defaults.pd,
-            "stabilizer": defaults.stabilizer if self.stabilizer is None else self.stabilizer,
+            "stabilizer": stabilizer,
+            "stabilizer_solver": (self.stabilizer_solver or DEFAULT_SOLVER) if stabilizer else None,
             "ankle_limit": defaults.ankle_limit if self.ankle_limit is None else self.ankle_limit,
         }
         return self.model_copy(update=filled)

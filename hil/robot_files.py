@@ -1,5 +1,6 @@
 """Finding and reading robot files: by name or path, with `--set KEY=VALUE` changes."""
 
+from collections import Counter
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -49,27 +50,42 @@ def load_robot(robot: str, overrides: tuple[str, ...] = ()) -> RobotDescription:
     return validate(RobotDescription, data, str(path))
 
 
-OVERRIDE_SECTIONS = ("supply", "timing", "plant", "noise", "walking")
+FIXED_SECTIONS: dict[str, type[Config]] = {
+    "supply": Supply,
+    "timing": Timing,
+    "plant": Plant,
+    "noise": Noise,
+}
+"""Sections whose keys can be set although the file may leave them out."""
+
+KeyPath = tuple[Any, ...]
+"""Keys from the top of a robot file down; some, such as control rates, are numbers there."""
 
 
-def overridable(data: dict[str, Any]) -> dict[str, tuple[str, str]]:
-    """Keys that `--set` knows: `section.key`, and `key` alone where it is unique."""
-    models: dict[str, type[Config]] = {
-        "supply": Supply,
-        "timing": Timing,
-        "plant": Plant,
-        "noise": Noise,
-    }
-    pairs = []
-    for section in OVERRIDE_SECTIONS:
-        if section in models:
-            pairs += [(section, key) for key in models[section].model_fields]
-        else:
-            pairs += [(section, str(key)) for key in data.get(section, {})]
-    keys = [key for _, key in pairs]
-    known = {f"{section}.{key}": (section, key) for section, key in pairs}
-    known.update({key: (section, key) for section, key in pairs if keys.count(key) == 1})
-    return known
+def overridable(data: dict[str, Any]) -> dict[str, KeyPath]:
+    """Keys that `--set` knows: whole dotted paths, and every end of one that is unique."""
+    paths: list[KeyPath] = [
+        (section, key) for section, model in FIXED_SECTIONS.items() for key in model.model_fields
+    ]
+    paths += _paths(data.get("walking", {}), ("walking",))
+    known = {_dotted(path): path for path in paths}
+    ends = [(_dotted(path[start:]), path) for path in paths for start in range(1, len(path))]
+    counts = Counter(end for end, _ in ends)
+    return {end: path for end, path in ends if counts[end] == 1} | known
+
+
+def _paths(section: dict[Any, Any], above: KeyPath) -> list[KeyPath]:
+    """Paths of everything in a section, at any depth, sections included."""
+    paths: list[KeyPath] = []
+    for key, value in section.items():
+        paths.append((*above, key))
+        if isinstance(value, dict):
+            paths += _paths(value, (*above, key))
+    return paths
+
+
+def _dotted(path: KeyPath) -> str:
+    return ".".join(map(str, path))
 
 
 def _override(data: dict[str, Any], text: str) -> None:
@@ -78,10 +94,13 @@ def _override(data: dict[str, Any], text: str) -> None:
         raise InputError(f"--set takes KEY=VALUE, got {text!r}")
     known = overridable(data)
     if key not in known:
-        raise UnknownNameError("--set key", key, sorted(k for k in known if "." in k))
-    section, name = known[key]
+        raise UnknownNameError("--set key", key, sorted({_dotted(path) for path in known.values()}))
+    *sections, name = known[key]
     try:
         parsed = yaml.safe_load(value)
     except yaml.YAMLError as error:
         raise InputError(f"--set {key}: {value!r} is not a value") from error
-    data.setdefault(section, {})[name] = parsed
+    place = data
+    for section in sections:
+        place = place.setdefault(section, {})
+    place[name] = parsed

@@ -28,15 +28,16 @@ def run(session: Session, *, progress: bool = True) -> RunResult:
     """Run a session and write its folder.
 
     The backend is opened first: a port that does not exist leaves no folder behind. Whatever the
-    loop raises is raised again, after the robot is safe and the folder is complete.
+    loop raises is raised again, after the robot is safe and the folder is complete. The session is
+    closed whatever happens.
     """
     try:
         session.backend.open()
         books = Books(session, progress=progress)
+        loop = Loop(session, books.sinks)
     except BaseException:
-        session.backend.close()
+        session.close()
         raise
-    loop = Loop(session, books.sinks)
     try:
         loop.run()
     except BaseException as error:
@@ -44,6 +45,13 @@ def run(session: Session, *, progress: bool = True) -> RunResult:
         books.close(loop.outcome)
         raise
     return RunResult(books.folder, books.close(loop.outcome))
+
+
+def _statistics(session: Session) -> dict[str, float | None]:
+    """The backend's statistics, with the session's figures where it has none."""
+    known = session.backend.statistics()
+    more = session.figures()
+    return known | {key: value for key, value in more.items() if known.get(key) is None}
 
 
 class Books:
@@ -71,7 +79,7 @@ class Books:
             outcome,
             trace,
             self._meta["weight_n"],
-            session.backend.statistics(),
+            _statistics(session),
             truth=session.world is not None,
         )
         write_json(self.folder / "report.json", report)

@@ -1,6 +1,7 @@
 """The parts of one run, put together by the composition root and used by the loop."""
 
 from collections.abc import Callable
+from contextlib import ExitStack
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -24,11 +25,14 @@ class Session:
     """The simulated surrounding; none on a real robot."""
     meta: dict[str, Any] = field(default_factory=dict)
     """Facts for meta.json that only the composition root knows."""
+    figures: Callable[[], dict[str, float | None]] = dict
+    """Report figures that the backend's statistics leave open, such as those of a virtual robot's
+    servos; asked for once, after the session is closed."""
     closers: tuple[Callable[[], None], ...] = ()
     """End what the composition root started, in this order, after the backend is closed."""
 
     def close(self) -> None:
         """Close the backend, then everything that was started for it. Safe to call twice."""
-        self.backend.close()
-        for closer in self.closers:
-            closer()
+        with ExitStack() as closing:  # runs them last to first, each even if one before it raised
+            for closer in reversed((self.backend.close, *self.closers)):
+                closing.callback(closer)

@@ -2,23 +2,24 @@
 
 from hil.errors import BackendError
 from hil.interface import Backend, StopMode
+from hil.session import Session
 
 TORQUE_OFF_ATTEMPTS = 5
 
 
-def stop_and_close(backend: Backend) -> None:
-    """Make a robot safe, whatever state it is in.
+def stop_and_close(session: Session) -> None:
+    """Make a robot safe, whatever state it is in, and release what its session holds.
 
     Each stage runs even if the one before it failed. Raises BackendError if torque off could not
     be verified, else what a stage raised.
     """
     try:
         try:
-            backend.stop(StopMode.SOFT)
+            session.backend.stop(StopMode.SOFT)
         finally:
-            _torque_off(backend)
+            _torque_off(session.backend)
     finally:
-        backend.close()
+        session.close()
 
 
 def _torque_off(backend: Backend) -> None:

@@ -18,59 +18,56 @@ class FootLoads:
     seen from the centre of the sole in the axes of the foot body: front is x ≥ 0, left is y ≥ 0.
     Valid between one mj_step and the next: forces, points and frames then all belong to the state
     before integration. With the dozen contacts of two feet, plain Python beats arrays here.
+    It reads one MjData, whose arrays of fixed size it looks up once.
     """
 
-    def __init__(self, model: mujoco.MjModel, description: RobotDescription) -> None:
-        self._model = model
+    def __init__(
+        self, model: mujoco.MjModel, data: mujoco.MjData, description: RobotDescription
+    ) -> None:
+        self._model, self._data = model, data
         self._elliptic = model.opt.cone == mujoco.mjtCone.mjCONE_ELLIPTIC
         static = model.body_weldid[model.geom_bodyid] == 0
         self._static: list[bool] = static.tolist()
         self._role = [_NONE] * model.ngeom
-        self._geoms: list[int] = []
-        self._bodies: list[int] = []
+        self._frames: list[tuple[Floats, Floats]] = []
+        """Centre of each sole, and its foot's rotation matrix row by row."""
         feet = (description.feet["left"], description.feet["right"])
         names = [foot.sole for foot in feet] + [foot.toe for foot in feet]
         for role, name in enumerate(names):
             if name is not None:
                 geom = named(model, mujoco.mjtObj.mjOBJ_GEOM, name, description.model_path)
                 self._role[geom] = role
-                self._geoms.append(geom)
-                self._bodies.append(int(model.geom_bodyid[geom]))
+                if role < _TOE:
+                    self._frames.append((data.geom_xpos[geom], data.xmat[model.geom_bodyid[geom]]))
         self._wrench = np.zeros(6)
 
-    def read(self, data: mujoco.MjData) -> tuple[Floats, Floats]:
-        """Corner forces (2, 4) and toe forces (2,) [N] of the step just made."""
-        corners = [0.0] * 8
-        toes = [0.0, 0.0]
+    def read(self) -> tuple[list[float], list[float]]:
+        """Forces [N] of the step just made: four corners of each foot, and two toes."""
+        corners, toes = [0.0] * 8, [0.0] * 2
+        data = self._data
         if data.ncon:
             contact = data.contact
             points, addresses = contact.pos.tolist(), contact.efc_address.tolist()
             forces = data.efc_force.tolist()
-            frames = self._foot_frames(data)
+            frames = [(centre.tolist(), axes.tolist()) for centre, axes in self._frames]
             for i, (first, second) in enumerate(contact.geom.tolist()):
                 role = self._role[second if self._static[first] else first]
                 ground = self._static[first] or self._static[second]
                 if role == _NONE or not ground or addresses[i] < 0:
                     continue
-                force = forces[addresses[i]] if self._elliptic else self._normal_force(data, i)
+                force = forces[addresses[i]] if self._elliptic else self._normal_force(i)
                 if role >= _TOE:
                     toes[role - _TOE] += force
                 else:
                     corners[4 * role + _corner(points[i], frames[role])] += force
-        return np.array(corners).reshape(2, 4), np.array(toes)
+        return corners, toes
 
-    def _foot_frames(self, data: mujoco.MjData) -> list[tuple[list[float], list[float]]]:
-        """Centre of each sole, and its foot's rotation matrix row by row."""
-        centres = data.geom_xpos[self._geoms].tolist()
-        axes = data.xmat[self._bodies].tolist()
-        return list(zip(centres, axes, strict=True))
-
-    def _normal_force(self, data: mujoco.MjData, contact: int) -> float:
+    def _normal_force(self, contact: int) -> float:
         """Normal force of a pyramidal contact: its edges added up [N].
 
         An elliptic cone has the normal force in its first constraint row instead.
         """
-        mujoco.mj_contactForce(self._model, data, contact, self._wrench)
+        mujoco.mj_contactForce(self._model, self._data, contact, self._wrench)
         return float(self._wrench[0])
 
 

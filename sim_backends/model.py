@@ -11,6 +11,13 @@ from hil.servo import MotorParameters
 SUPPORT = "support"
 """Weld between world and root body: the hand that holds the robot."""
 ACCELEROMETER = "imu_accelerometer"
+_DISABLED = (
+    mujoco.mjtDisableBit.mjDSBL_AUTORESET,
+    mujoco.mjtDisableBit.mjDSBL_ISLAND,
+    mujoco.mjtDisableBit.mjDSBL_MIDPHASE,
+)
+"""A diverged plant must be reported, not put back to its first pose. One robot is one constraint
+island, and bodies of few geoms need no search tree: both only cost time."""
 _SUPPORT_SOLREF = (0.005, 1.0)
 """Time constant of the hand [s] and its damping ratio: stiff, but above two substeps."""
 
@@ -24,6 +31,7 @@ def build_model(
     actuator/dcmotor); actuators of the MJCF itself are dropped, since a backend drives the
     joints. Raises InputError when the MJCF cannot be read or lacks a part that is named.
     """
+    _keep_log_off_disk()
     spec = _read(description)
     _require_parts(spec, description)
     for actuator in list(spec.actuators):
@@ -41,6 +49,13 @@ def build_model(
     model = _compile(spec, description)
     _configure(model, description, rate_hz)
     return model
+
+
+def _keep_log_off_disk() -> None:
+    """MuJoCo's warnings would go to MUJOCO_LOG.TXT in the user's folder."""
+    log = mujoco.MjLogConfig.get()
+    log.logto_file = False
+    log.set()
 
 
 def substeps(description: RobotDescription, rate_hz: int) -> int:
@@ -138,8 +153,8 @@ def _configure(model: mujoco.MjModel, description: RobotDescription, rate_hz: in
     option.timestep = 1.0 / (rate_hz * substeps(description, rate_hz))
     # MuJoCo 4.0.0 solves sparse Jacobians wrongly (mujoco issue 3767); robots here are small.
     option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
-    # A diverged plant must be reported, not put back to its first pose.
-    option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_AUTORESET)
+    for bit in _DISABLED:
+        option.disableflags |= int(bit)
     _set_friction(model, description)
     _set_joints(model, description)
     root = named(model, mujoco.mjtObj.mjOBJ_BODY, description.root, description.model_path)

@@ -1,5 +1,6 @@
 """The backend without wires: the interface straight on the MuJoCo plant."""
 
+import math
 from collections import deque
 
 import numpy as np
@@ -12,17 +13,9 @@ from sim_backends.latency import command_latency_ns
 from sim_backends.plant import Plant
 from sim_backends.plant_clock import PlantClock
 from sim_backends.plant_sensors import PlantSensors
-from sim_backends.servo_physics import ServoTotals
 
 _FIELDS = ("position", "velocity", "stiffness", "damping", "torque")
 BUS_KEYS = ("bus_utilisation_pct", "bus_crc_errors", "bus_timeouts", "bus_stale_frames")
-SERVO_KEYS = (
-    "temperature_max_c",
-    "torque_rms_ratio_max",
-    "duty_saturation_pct_max",
-    "voltage_min_v",
-    "energy_wh",
-)
 
 
 class MujocoBackend:
@@ -53,6 +46,7 @@ class MujocoBackend:
             raise InputError(f"plant made for {plant.rate_hz} Hz, loop at {rate_hz} Hz")
         n = len(description.joints)
         self._description = description
+        self._names = description.joint_names
         self._plant = plant
         self._mapping = mapping
         self._sensors = PlantSensors(plant, seed)
@@ -107,16 +101,14 @@ class MujocoBackend:
         BackendError if not open.
         """
         self._require_open()
-        require_finite(command, self._description.joint_names)
+        require_finite(command, self._names)
         if self._mapping is not None:
             goals, applied = self._mapping.map(command, self._frame)
-            # The mapping reuses its goals, and slow buses hold them for more than a tick.
-            arrays = (goals.position, goals.p_gain, goals.d_gain, goals.pwm_limit)
             if not self._armed:
                 applied.limit |= int(Limit.HELD)
                 return applied
             due_ns = self._frame.time_ns + self._latency_ns
-            self._pending.append((due_ns, ServoGoals(*(array.copy() for array in arrays))))
+            self._pending.append((due_ns, _copied(goals)))
             return applied
         return self._apply_torque(command)
 
@@ -161,39 +153,34 @@ class MujocoBackend:
 
     def statistics(self) -> dict[str, float | None]:
         """Servo figures of a servo robot; None for the bus, which is not there."""
-        statistics: dict[str, float | None] = dict.fromkeys(BUS_KEYS + SERVO_KEYS)
-        if self._plant.servos is not None:
-            statistics.update(servo_figures(self._plant.servos.totals()))
-        return statistics
+        return {**dict.fromkeys(BUS_KEYS), **self._plant.figures()}
 
     def _require_open(self) -> None:
         if not self._open:
             raise BackendError(f"{self._description.name}: the MuJoCo backend is not open")
 
 
-def servo_figures(totals: ServoTotals) -> dict[str, float]:
-    """Totals of the servos under their report keys."""
-    values = (
-        totals.temperature_max,
-        float(totals.torque_rms_ratio.max()),
-        100.0 * float(totals.saturation.max()),
-        totals.voltage_min,
-        totals.energy / 3600.0,
+def _copied(goals: ServoGoals) -> ServoGoals:
+    """The mapping reuses its goals, and slow buses hold them for more than a tick."""
+    return ServoGoals(
+        goals.position.copy(), goals.p_gain.copy(), goals.d_gain.copy(), goals.pwm_limit.copy()
     )
-    return dict(zip(SERVO_KEYS, values, strict=True))
 
 
 def require_finite(command: JointCommand, names: tuple[str, ...]) -> None:
     """Raise InvalidCommandError, naming the joints, unless every number is there and finite."""
-    arrays = {field: getattr(command, field) for field in _FIELDS}
-    shapes = {field: array.shape for field, array in arrays.items() if array.size != len(names)}
-    if shapes:
+    arrays = (
+        command.position, command.velocity, command.stiffness, command.damping, command.torque
+    )  # fmt: skip
+    sizes = [array.size for array in arrays]
+    if sizes != [len(names)] * len(arrays):
+        shapes = {name: a.shape for name, a in zip(_FIELDS, arrays, strict=True)}
         raise InvalidCommandError(f"{len(names)} joints, but the command has shapes {shapes}")
-    if command.is_finite():
+    if all(all(map(math.isfinite, array.tolist())) for array in arrays):
         return
     bad = [
         f"joint {name}: commanded {field} is {value}"
-        for field, array in arrays.items()
+        for field, array in zip(_FIELDS, arrays, strict=True)
         for name, value in zip(names, array, strict=True)
         if not np.isfinite(value)
     ]

@@ -9,6 +9,7 @@ from hil.interface import Floats, Ints, Truth
 from hil.servo import MotorParameters
 from sim_backends.foot_loads import FootLoads
 from sim_backends.model import ACCELEROMETER, SUPPORT, build_model, foot_geoms, named, substeps
+from sim_backends.servo_figures import SERVO_KEYS
 from sim_backends.servo_physics import ServoPhysics
 
 DIVERGED_SPEED = 1e5
@@ -50,9 +51,9 @@ class Plant:
         self._dofs = _selection(self.model.jnt_dofadr[joints])
         self._angles = _selection(self.model.jnt_qposadr[joints])
         self._find_imu()
-        self._loads = FootLoads(self.model, description)
+        self._loads = FootLoads(self.model, self.data, description)
         self._loads_index = 0
-        self._foot_force, self._toe_force = np.zeros((2, 4)), np.zeros(2)
+        self._corners, self._toes = [0.0] * 8, [0.0] * 2
         self._set_start_pose(initial_velocity)
         n = len(description.joints)
         self._truth = Truth(0, *(np.zeros(k) for k in (3, 4, 3, 3, n, n, 3, 3, (2, 4), 2)))
@@ -65,9 +66,10 @@ class Plant:
                 description.supply,
                 self.model.opt.timestep,
                 self.model.actuator_gainprm[:, 0],
+                self.data.ctrl,
                 phase,
             )
-            self.data.ctrl[:] = self.servos.drive(self.joint_position, self.joint_velocity)
+            self.servos.drive(self.joint_position, self.joint_velocity)
 
     def _id(self, kind: mujoco.mjtObj, name: str) -> int:
         return named(self.model, kind, name, self.description.model_path)
@@ -79,11 +81,13 @@ class Plant:
         if free < 0 or model.jnt_type[free] != mujoco.mjtJoint.mjJNT_FREE:
             raise InputError(f"{self.description.model_path}: root body {name!r} has no free joint")
         q, v = int(model.jnt_qposadr[free]), int(model.jnt_dofadr[free])
-        qpos, self._qvel = self.data.qpos, self.data.qvel
-        self._position: Floats = qpos[q : q + 3]
-        self._orientation: Floats = qpos[q + 3 : q + 7]
+        self._qpos, self._qvel = self.data.qpos, self.data.qvel
+        self._position: Floats = self._qpos[q : q + 3]
+        self._orientation: Floats = self._qpos[q + 3 : q + 7]
         self._linear: Floats = self._qvel[v : v + 3]
         self._angular: Floats = self._qvel[v + 3 : v + 6]
+        self._com = self.data.subtree_com[self._root]
+        self._com_velocity = self.data.subtree_linvel[self._root]
 
     def _find_imu(self) -> None:
         imu = self.description.imu
@@ -146,7 +150,7 @@ class Plant:
                 f"{self.description.name}: the simulation diverged at {self.time_ns * 1e-9:.3f} s"
             )
         if self.servos is not None:
-            self.data.ctrl[:] = self.servos.drive(self.joint_position, self.joint_velocity)
+            self.servos.drive(self._qpos[self._angles], self._qvel[self._dofs])
 
     def set_torque(self, torque: Floats) -> None:
         """Joint torques of a torque robot [N·m], (n,), until set again."""
@@ -157,7 +161,7 @@ class Plant:
     @property
     def joint_position(self) -> Floats:
         """[rad], shape (n,); changes with the next substep."""
-        position: Floats = self.data.qpos[self._angles]
+        position: Floats = self._qpos[self._angles]
         return position
 
     @property
@@ -186,13 +190,14 @@ class Plant:
 
     def foot_force(self) -> Floats:
         """Normal corner forces of the last substep [N], shape (2, 4)."""
-        self._read_loads()
-        return self._foot_force
+        return np.array(self.corner_forces()).reshape(2, 4)
 
-    def _read_loads(self) -> None:
+    def corner_forces(self) -> list[float]:
+        """Normal forces of the last substep [N] at the corners of both feet, left foot first."""
         if self._loads_index != self.substep_index:
-            self._foot_force, self._toe_force = self._loads.read(self.data)
+            self._corners, self._toes = self._loads.read()
             self._loads_index = self.substep_index
+        return self._corners
 
     def truth(self) -> Truth:
         """State at the last grid point; the returned object is reused.
@@ -200,7 +205,6 @@ class Plant:
         Loads are those of the substep that led there; everything else is of the new state, for
         which the positions are computed afresh, since mj_step leaves those of the state before.
         """
-        self._read_loads()
         model, data, truth = self.model, self.data, self._truth
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
@@ -213,11 +217,17 @@ class Plant:
         truth.base_angular_velocity[:] = self._angular
         truth.joint_position[:] = self.joint_position
         truth.joint_velocity[:] = self.joint_velocity
-        truth.com[:] = data.subtree_com[self._root]
-        truth.com_velocity[:] = data.subtree_linvel[self._root]
-        truth.foot_force[:] = self._foot_force
-        truth.toe_force[:] = self._toe_force
+        truth.com[:] = self._com
+        truth.com_velocity[:] = self._com_velocity
+        truth.foot_force.ravel()[:] = self.corner_forces()
+        truth.toe_force[:] = self._toes
         return truth
+
+    def figures(self) -> dict[str, float | None]:
+        """Figures of the servos since the start, by report key; None for a torque robot."""
+        if self.servos is None:
+            return dict.fromkeys(SERVO_KEYS)
+        return self.servos.totals().figures()
 
     # Disturbances ----------------------------------------------------------------------------
 

@@ -18,6 +18,7 @@ class PlantClock:
         """`before_substep` gets the grid time at which the substep to come ends [ns]."""
         self._plant = plant
         self._now_ns = plant.time_ns
+        self._grid_ns = plant.grid_time_ns(plant.substep_index + 1)
         self._before = before_substep
         self._after = after_substep
 
@@ -28,13 +29,12 @@ class PlantClock:
     def sleep_until_ns(self, time_ns: int) -> None:
         """Step the plant through every grid point up to an absolute time."""
         plant = self._plant
-        end_ns = plant.grid_time_ns(plant.substep_index + 1)
-        while end_ns <= time_ns:
-            self._now_ns = end_ns
-            self._before(end_ns)
+        while self._grid_ns <= time_ns:
+            self._now_ns = self._grid_ns
+            self._before(self._now_ns)
             plant.substep()
             self._after()
-            end_ns = plant.grid_time_ns(plant.substep_index + 1)
+            self._grid_ns = plant.grid_time_ns(plant.substep_index + 1)
         self._now_ns = max(self._now_ns, time_ns)
 
     def wait_readable(self, ports: Sequence[Readable], deadline_ns: int) -> None:

@@ -10,7 +10,7 @@ from hil.interface import CORNERS, SIDES, Floats, SensorFrame
 from hil.servo import CENTRE_COUNTS, COUNTS_PER_RADIAN
 from sim_backends.latency import board_age_ns
 from sim_backends.plant import Plant
-from sim_backends.sensor_models import CellErrors, ImuErrors
+from sim_backends.sensor_models import CellErrors, ImuErrors, ImuSample
 from sim_backends.servo_physics import ServoPhysics
 
 VELOCITY_UNIT = 0.229 * 2 * np.pi / 60
@@ -28,14 +28,14 @@ class DelayedSamples(Generic[SampleT]):
         grid_ns = 1_000_000_000 / (plant.rate_hz * plant.substeps)
         self._plant = plant
         self._delay = round(delay_ns / grid_ns)
+        self.phase = -self._delay % plant.substeps
+        """Substep of a tick at whose end a sample is the one that a later tick will want."""
         self._take = take
         self._samples = deque([(plant.substep_index, take())])
 
-    def after_substep(self) -> None:
-        """Take a sample if one taken now is the one that a tick will want."""
-        index = self._plant.substep_index
-        if (index + self._delay) % self._plant.substeps == 0:
-            self._samples.append((index, self._take()))
+    def take(self) -> None:
+        """Take a sample now."""
+        self._samples.append((self._plant.substep_index, self._take()))
 
     def latest(self) -> tuple[int, SampleT]:
         """Grid time [ns] and value of the newest sample that is old enough."""
@@ -59,26 +59,31 @@ class PlantSensors:
         # Another stream than that of the plant's own draws from the same seed.
         random = np.random.default_rng((seed, 1))
         self._plant = plant
-        self._cells = CellErrors(description.noise, random, (len(SIDES), len(CORNERS)))
+        self._cells = CellErrors(description.noise, random, len(SIDES) * len(CORNERS))
+        self._zero: list[float] = self._cells.zero.tolist()
         self._imu_errors = ImuErrors(description.noise, random)
         foot_board = description.feet["left"].board
         delay = board_age_ns(description, description.boards[foot_board]) if foot_board else 0
         self._feet = DelayedSamples(plant, delay, self._sample_feet)
-        self._imu: DelayedSamples[tuple[Floats, Floats, Floats]] | None = None
+        self._imu: DelayedSamples[ImuSample] | None = None
         if description.imu is not None:
             delay = board_age_ns(description, description.boards[description.imu.board])
             self._imu = DelayedSamples(plant, delay, self._sample_imu)
+        self._angle_unit = np.array([j.direction for j in description.joints]) / COUNTS_PER_RADIAN
 
     def after_substep(self) -> None:
         """Sample what a later frame will hold."""
-        self._feet.after_substep()
-        if self._imu is not None:
-            self._imu.after_substep()
+        phase = self._plant.substep_index % self._plant.substeps
+        if phase == self._feet.phase:
+            self._feet.take()
+        if self._imu is not None and phase == self._imu.phase:
+            self._imu.take()
 
-    def _sample_feet(self) -> Floats:
-        return self._cells.measure(self._plant.foot_force() + self._cells.zero)
+    def _sample_feet(self) -> list[float]:
+        forces = zip(self._plant.corner_forces(), self._zero, strict=True)
+        return self._cells.measure([force + zero for force, zero in forces])
 
-    def _sample_imu(self) -> tuple[Floats, Floats, Floats]:
+    def _sample_imu(self) -> ImuSample:
         plant = self._plant
         return self._imu_errors.measure(
             plant.orientation, plant.angular_velocity, plant.specific_force()
@@ -87,38 +92,37 @@ class PlantSensors:
     def fill(self, frame: SensorFrame, now_ns: int, torque: Floats) -> None:
         """Write the frame of this moment; `torque` [N·m] is what a torque robot applies."""
         frame.time_ns = now_ns
-        sampled_ns = self._plant.time_ns
-        if self._plant.servos is not None:
-            _fill_servo_joints(frame, self._plant.servos)
+        plant = self._plant
+        if plant.servos is not None:
+            self._fill_servo_joints(frame, plant.servos)
         else:
-            frame.joint_position[:] = self._plant.joint_position
-            frame.joint_velocity[:] = self._plant.joint_velocity
+            frame.joint_position[:] = plant.joint_position
+            frame.joint_velocity[:] = plant.joint_velocity
             frame.joint_torque[:] = torque
-        frame.joint_age_ns[:] = now_ns - sampled_ns
-        frame.joint_valid[:] = True
+        frame.joint_age_ns.fill(now_ns - plant.time_ns)
+        frame.joint_valid.fill(True)
         taken_ns, force = self._feet.latest()
-        frame.foot_force[:] = force
-        frame.foot_age_ns[:] = now_ns - taken_ns
-        frame.foot_valid[:] = True
+        frame.foot_force.ravel()[:] = force
+        frame.foot_age_ns.fill(now_ns - taken_ns)
+        frame.foot_valid.fill(True)
         if self._imu is not None:
             self._fill_imu(frame, *self._imu.latest())
 
-    def _fill_imu(
-        self, frame: SensorFrame, taken_ns: int, sample: tuple[Floats, Floats, Floats]
-    ) -> None:
+    def _fill_imu(self, frame: SensorFrame, taken_ns: int, sample: ImuSample) -> None:
         frame.imu_orientation[:] = sample[0]
         frame.imu_angular_velocity[:] = sample[1]
         frame.imu_linear_acceleration[:] = sample[2]
         frame.imu_age_ns = frame.time_ns - taken_ns
         frame.imu_valid = True
 
-
-def _fill_servo_joints(frame: SensorFrame, servos: ServoPhysics) -> None:
-    sign = servos.motors.direction
-    np.subtract(servos.counts, CENTRE_COUNTS, out=frame.joint_position)
-    frame.joint_position *= sign / COUNTS_PER_RADIAN
-    np.rint(servos.velocity / VELOCITY_UNIT, out=frame.joint_velocity)
-    frame.joint_velocity *= sign * VELOCITY_UNIT
-    frame.joint_torque[:] = servos.torque()
-    frame.joint_temperature[:] = np.rint(servos.temperature())
-    frame.joint_voltage[:] = round(servos.voltage / VOLTAGE_UNIT) * VOLTAGE_UNIT
+    def _fill_servo_joints(self, frame: SensorFrame, servos: ServoPhysics) -> None:
+        position, velocity = frame.joint_position, frame.joint_velocity
+        np.subtract(servos.counts, CENTRE_COUNTS, position)
+        np.multiply(position, self._angle_unit, position)
+        # Rounding is the same in both directions, so the servo's own sign does not matter.
+        np.divide(self._plant.joint_velocity, VELOCITY_UNIT, velocity)
+        np.rint(velocity, velocity)
+        np.multiply(velocity, VELOCITY_UNIT, velocity)
+        frame.joint_torque[:] = servos.torque()
+        frame.joint_temperature[:] = servos.degrees()
+        frame.joint_voltage.fill(round(servos.voltage / VOLTAGE_UNIT) * VOLTAGE_UNIT)

@@ -1,6 +1,6 @@
 """The position servos of a robot as electrical machines: from goals to terminal voltages."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from hil.servo import (
     MotorParameters,
     ServoGoals,
 )
+from sim_backends.servo_figures import ServoTotals
 
 D_DIVISOR = 16.0
 """Position D Gain register units per internal unit (X-series e-manual, Position PID Gain)."""
@@ -32,20 +33,17 @@ _KEPT = 64
 """Substeps whose duties and currents are kept before they are added to the totals."""
 
 
-@dataclass(frozen=True, slots=True)
-class ServoTotals:
-    """What the servos went through since the start, for the report."""
+class Measured(NamedTuple):
+    """What n servos measure at one grid point, in their own directions."""
 
-    temperature_max: float
-    """[°C]"""
-    torque_rms_ratio: Floats
-    """RMS motor torque over stall torque, shape (n,)."""
-    saturation: Floats
-    """Share of substeps with the drive at its limit, shape (n,)."""
-    voltage_min: float
-    """[V]"""
-    energy: float
-    """Taken from the supply [J]."""
+    counts: list[float]
+    """Encoders [counts], whole numbers."""
+    velocity: list[float]
+    """[rad/s]"""
+    duty: list[float]
+    """Share of the supply on the terminals."""
+    current: list[float]
+    """[A]"""
 
 
 class ServoPhysics:
@@ -85,7 +83,6 @@ class ServoPhysics:
         self._terminal = terminal_resistance
         self._terminal_voltage = terminal_voltage
         self._sign = motors.direction.astype(np.float64)
-        self._scale = self._sign * COUNTS_PER_RADIAN
         self._zero = CENTRE_COUNTS + encoder_phase
         self.enabled = np.zeros(n, dtype=np.bool_)
         self.goal = np.full(n, float(CENTRE_COUNTS))
@@ -93,32 +90,26 @@ class ServoPhysics:
         self._p_gain, self._d_gain = np.zeros(n), np.zeros(n)
         self._limit, self._conductance = np.zeros(n), np.zeros(n)
         self._gains = (b"", b"", b"")
-        self._low, self._high, self._full = np.zeros(n), np.zeros(n), np.full(n, np.inf)
-        self._has_d = self._stale = False
-        self.counts = np.zeros(n)
-        """Encoder reading [counts], shape (n,)."""
-        self._joint_velocity = np.zeros(n)
         self._back_emf = self._sign * motors.torque_constant
-        self._duties, self._currents = np.zeros((2, _KEPT, n))
-        self._rows = list(zip(self._duties, self._currents, strict=True))
-        self._kept = 0
-        self.duty, self.current = self._rows[0]
-        """Share of the supply on the terminals and motor current [A], both in the servo's own
-        direction, shape (n,); other arrays after the next `drive`."""
+        self._full = np.full(n, np.inf)
+        self._constants: list[tuple[float, ...]] = []
+        self._stale = True
+        self.measured = Measured(*([0.0] * n for _ in range(4)))
+        """What the servos measured when `drive` was called last."""
         self.voltage = supply.voltage
         """Supply at the servos [V]."""
-        self._work = np.zeros(n)
         self._reset_totals(n)
         self._terminal[:] = OPEN_CIRCUIT
 
     def _reset_totals(self, n: int) -> None:
         self._substeps = 0
+        self._kept: list[Measured] = []
         self._square_sum, self._heated = np.zeros(n), np.zeros(n)
         self._saturated = np.zeros(n)
         self._temperature = np.full(n, AMBIENT)
         self._cooled_at = 0
         self._look_at = 0
-        self._degrees = np.full(n, AMBIENT)
+        self._degrees = [round(AMBIENT)] * n
         self._temperature_max = AMBIENT
         self._voltage_min = self.supply.voltage
         self._energy = 0.0
@@ -131,20 +122,19 @@ class ServoPhysics:
         gains = (goals.p_gain.tobytes(), goals.d_gain.tobytes(), goals.pwm_limit.tobytes())
         if gains == self._gains:
             return
-        self._stale |= gains[1:] != self._gains[1:]
         self._gains = gains
         np.divide(goals.p_gain, self.motors.gain_divisor * PWM_FULL, out=self._p_gain)
         np.multiply(goals.d_gain, D_PERIOD / (D_DIVISOR * PWM_FULL), out=self._d_gain)
         np.multiply(goals.pwm_limit, 1.0 / PWM_FULL, out=self._limit)
+        self._stale = True
 
     def set_gains(self, servo: int, p_gain: int, d_gain: int, pwm_limit: int) -> None:
         """Gains and PWM limit of one servo, as register values."""
         self._gains = (b"", b"", b"")
         self._p_gain[servo] = p_gain / (self.motors.gain_divisor[servo] * PWM_FULL)
-        damping, limit = d_gain * D_PERIOD / (D_DIVISOR * PWM_FULL), pwm_limit / PWM_FULL
-        if damping != self._d_gain[servo] or limit != self._limit[servo]:
-            self._d_gain[servo], self._limit[servo] = damping, limit
-            self._stale = True
+        self._d_gain[servo] = d_gain * D_PERIOD / (D_DIVISOR * PWM_FULL)
+        self._limit[servo] = pwm_limit / PWM_FULL
+        self._stale = True
 
     def set_enabled(self, servo: int, on: bool) -> None:
         """Torque of one servo on, or its terminals open."""
@@ -155,11 +145,18 @@ class ServoPhysics:
         self._stale = True
 
     def _refresh(self) -> None:
-        self._account()
-        np.multiply(self._limit, self.enabled, out=self._high)
-        np.negative(self._high, out=self._low)
-        self._full[:] = np.where(self._high > 0, self._high, np.inf)
-        self._has_d = bool(self._d_gain.any())
+        """Collect the constants of every servo for `drive`."""
+        high = self._limit * self.enabled
+        full = np.where(high > 0, high, np.inf)
+        if not np.array_equal(full, self._full):
+            self._account()
+            self._full = full
+        scale = self._sign * COUNTS_PER_RADIAN
+        rows = (
+            self._sign, scale, self._zero, self._p_gain, self._d_gain * COUNTS_PER_RADIAN, high,
+            self.motors.torque_constant, self._conductance,
+        )  # fmt: skip
+        self._constants = [tuple(row) for row in np.transpose(rows).tolist()]
         self._stale = False
 
     # One substep -----------------------------------------------------------------------------
@@ -167,32 +164,38 @@ class ServoPhysics:
     def drive(self, position: Floats, velocity: Floats) -> Floats:
         """Terminal voltages in joint direction [V], (n,), for the substep that begins now.
 
-        `velocity` is looked at until the next call. Whole arrays into fixed places, because this
-        runs in every substep.
+        Runs in every substep: for a dozen servos plain floats are faster than arrays.
         """
         if self._stale:
             self._refresh()
-        if self._kept == _KEPT:
+        supply, supply_current = self.voltage, 0.0
+        voltages: list[float] = []
+        measured = Measured([], [], [], [])
+        counts, speeds, duties, currents = measured
+        for angle, rate, goal, (sign, scale, zero, p, d, high, k, conductance) in zip(
+            position.tolist(), velocity.tolist(), self.goal.tolist(), self._constants, strict=True
+        ):
+            count = round(angle * scale + zero)
+            speed = rate * sign
+            duty = (goal - count) * p - d * speed
+            if duty > high:
+                duty = high
+            elif duty < -high:
+                duty = -high
+            voltage = duty * supply
+            current = (voltage - speed * k) * conductance
+            supply_current += duty * current
+            voltages.append(voltage * sign)
+            counts.append(count)
+            speeds.append(speed)
+            duties.append(duty)
+            currents.append(current)
+        self._terminal_voltage[:] = voltages
+        self._load_supply(supply_current)
+        self.measured = measured
+        self._kept.append(measured)
+        if len(self._kept) == _KEPT:
             self._account()
-        duty, current = self.duty, self.current = self._rows[self._kept]
-        self._kept += 1
-        self._joint_velocity = velocity
-        counts, work = self.counts, self._work
-        np.multiply(position, self._scale, counts)
-        np.add(counts, self._zero, counts)
-        np.rint(counts, counts)
-        np.subtract(self.goal, counts, duty)
-        np.multiply(duty, self._p_gain, duty)
-        if self._has_d:
-            duty -= self._d_gain * (self.velocity * COUNTS_PER_RADIAN)
-        np.minimum(duty, self._high, duty)
-        np.maximum(duty, self._low, duty)
-        np.multiply(duty, self.voltage, work)
-        np.multiply(work, self._sign, self._terminal_voltage)
-        np.multiply(velocity, self._back_emf, current)
-        np.subtract(work, current, current)
-        np.multiply(current, self._conductance, current)
-        self._load_supply(float(duty.dot(current)))
         return self._terminal_voltage
 
     def _load_supply(self, current: float) -> None:
@@ -204,19 +207,31 @@ class ServoPhysics:
 
     def _account(self) -> None:
         """Add what is kept to the totals."""
-        kept = self._kept
-        self._kept = 0
-        self._substeps += kept
-        self._square_sum += np.square(self._currents[:kept]).sum(axis=0)
-        self._saturated += (np.abs(self._duties[:kept]) >= self._full).sum(axis=0)
+        if not self._kept:
+            return
+        self._substeps += len(self._kept)
+        currents = np.array([measured.current for measured in self._kept])
+        duties = np.array([measured.duty for measured in self._kept])
+        self._square_sum += np.square(currents).sum(axis=0)
+        self._saturated += (np.abs(duties) >= self._full).sum(axis=0)
+        self._kept.clear()
 
     # Readings --------------------------------------------------------------------------------
 
     @property
-    def velocity(self) -> Floats:
-        """Speed in the servo's own direction [rad/s], shape (n,)."""
-        velocity: Floats = self._joint_velocity * self._sign
-        return velocity
+    def counts(self) -> Floats:
+        """Encoder readings [counts], shape (n,)."""
+        return np.array(self.measured.counts, dtype=np.float64)
+
+    @property
+    def duty(self) -> Floats:
+        """Share of the supply on the terminals, in the servo's own direction, shape (n,)."""
+        return np.array(self.measured.duty)
+
+    @property
+    def current(self) -> Floats:
+        """Motor currents in the servo's own direction [A], shape (n,)."""
+        return np.array(self.measured.current)
 
     def torque(self) -> Floats:
         """Motor torque in joint direction, as the current tells it [N·m], shape (n,)."""
@@ -237,11 +252,12 @@ class ServoPhysics:
             self._temperature_max = max(self._temperature_max, float(self._temperature.max()))
         return self._temperature
 
-    def degrees(self) -> Floats:
-        """Case temperatures as whole °C, shape (n,), looked at now and then."""
-        if self._substeps + self._kept >= self._look_at:
-            self._look_at = self._substeps + self._kept + TEMPERATURE_SUBSTEPS
-            self._degrees = np.rint(self.temperature())
+    def degrees(self) -> list[int]:
+        """Case temperatures as whole °C, looked at now and then."""
+        substeps = self._substeps + len(self._kept)
+        if substeps >= self._look_at:
+            self._look_at = substeps + TEMPERATURE_SUBSTEPS
+            self._degrees = [round(degrees) for degrees in self.temperature().tolist()]
         return self._degrees
 
     def totals(self) -> ServoTotals:

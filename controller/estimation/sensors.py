@@ -61,7 +61,7 @@ class SensorEstimator:
         self._update_attitude(frame)
         model.set_state(self._at_origin)
         odometry = self._odometry
-        odometry.update(contact.corners, contact.contact)
+        odometry.update(contact.corners, contact.contact.tolist())
         self._trim.update(model.root_rotation, model.feet, contact.corners)
         estimate.base_position[:] = odometry.position
         estimate.base_linear_velocity[:] = odometry.velocity

@@ -29,7 +29,7 @@ class Alteration:
     """Δ_s = clip(Δ_{s−1} + β·clip(V̄ − V*, ±e_max), Δ_min, Δ_max), at the end of step s.
 
     V̄ is the mean speed of the step. Δ < 0 shortens the step, which makes the body faster.
-    The first author's stored code, β = 0.1 s; seed 001, section 5 has it as
+    The first author's stored code, β = 0.1 s; seed 003_73fecd8ec8927aad, section 5, has it as
     Δ_s = Δ_{s−1} + β(V − V*).
     """
 

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 from pydantic import PositiveFloat
 
-from hil.interface import Floats
 from hil.validation import Config
 
 
@@ -20,13 +19,15 @@ class CommandRamp:
     """V*, sagittal and coronal, following the operator's speed by at most a·h a tick."""
 
     config: CommandConfig
-    speed: Floats
-    """V* [m/s], shape (2,)."""
+    speed: tuple[float, float] = (0.0, 0.0)
+    """V* [m/s]."""
 
-    def update(self, dt: float, sagittal: float, lateral: float) -> Floats:
-        """V* one tick later [m/s], shape (2,); the array is reused."""
+    def update(self, dt: float, sagittal: float, lateral: float) -> tuple[float, float]:
+        """V* one tick later [m/s]."""
         step = self.config.acceleration * dt
-        for axis, wanted in enumerate((sagittal, lateral)):
-            change = wanted - self.speed[axis]
-            self.speed[axis] += min(max(change, -step), step)
+        u, v = self.speed
+        self.speed = (
+            u + min(max(sagittal - u, -step), step),
+            v + min(max(lateral - v, -step), step),
+        )
         return self.speed

@@ -6,10 +6,9 @@ body's speed would come to rest upright over it.
 
 import math
 
-import numpy as np
 from pydantic import Field, PositiveFloat
 
-from hil.interface import Floats
+from controller.walking.heading_frame import Pair
 from hil.validation import Config
 
 
@@ -55,31 +54,30 @@ class FootPlacement:
 
     def distance(
         self,
-        velocity: Floats,
+        velocity: Pair,
         height: float,
-        wanted: Floats,
+        wanted: Pair,
         alteration: float,
         outward: float,
-    ) -> Floats:
-        """Landing point d relative to the centre of mass in the heading frame [m], shape (2,).
+    ) -> Pair:
+        """Landing point d relative to the centre of mass in the heading frame [m].
 
-        `velocity` and `wanted` are sagittal and coronal speeds [m/s], shape (2,); `outward` is
-        the coronal offset ± w/2 [m], positive to the left.
+        `velocity` and `wanted` are sagittal and coronal speeds [m/s]; `outward` is the coronal
+        offset ± w/2 [m], positive to the left.
         """
         config = self._config
-        offsets = (alteration, outward)
-        landing = np.empty(2)
-        for axis in range(2):
-            point = pendulum_distance(
-                float(velocity[axis]), height, config.gain[axis], self._gravity
-            )
-            point += offsets[axis] - config.speed_offset[axis] * float(wanted[axis])
-            landing[axis] = min(max(point, -self._limit), self._limit)
-        return landing
+        limit = self._limit
+        (gain_x, gain_y), (offset_x, offset_y) = config.gain, config.speed_offset
+        x = pendulum_distance(velocity[0], height, gain_x, self._gravity)
+        y = pendulum_distance(velocity[1], height, gain_y, self._gravity)
+        x += alteration - offset_x * wanted[0]
+        y += outward - offset_y * wanted[1]
+        return min(max(x, -limit), limit), min(max(y, -limit), limit)
 
-    def blend(self, phase: float, landing: Floats, start: Floats) -> Floats:
+    def blend(self, phase: float, landing: Pair, start: Pair) -> Pair:
         """Target at a phase, between the start of the swing and the landing point [m]."""
         config = self._config
         span = config.end_phase - config.start_phase
         t = min(max(1.0 - (phase - config.start_phase) / span, 0.0), 1.0)
-        return (1.0 - t * t) * landing + t * t * start
+        to, back = 1.0 - t * t, t * t
+        return to * landing[0] + back * start[0], to * landing[1] + back * start[1]

@@ -17,19 +17,22 @@ class GravityCompensation:
     """
 
     def __init__(self, robot: RobotModel, groups: JointGroups) -> None:
-        self._robot = robot
-        self._groups = groups
-        self._weight = robot.model.body_subtreemass[groups.child] * robot.gravity
+        self._centres: Floats = robot.data.subtree_com
+        self._anchors: Floats = robot.data.xanchor
+        self._children, self._joints = groups.child, groups.anchor_joint
+        self._result: Floats = np.zeros((len(groups), 3))
+        weight = robot.model.body_subtreemass[groups.child] * robot.gravity
         beyond = groups.descends()
         stance_legs = [beyond[:, hip] for hip in groups.legs("hip")]
-        self._masks = [np.where(leg, 0.0, self._weight) for leg in stance_legs]
+        self._masks = [np.where(leg, 0.0, weight) for leg in stance_legs]
 
     def torques(self, stance: int) -> Floats:
-        """World torque vectors [N·m], shape (groups, 3); zero on the stance leg."""
-        groups = self._groups
-        lever = self._robot.data.subtree_com[groups.child] - groups.anchors()
+        """World torque vectors [N·m], shape (groups, 3); zero on the stance leg; the array
+        is reused."""
+        lever = self._centres.take(self._children, axis=0)
+        lever -= self._anchors.take(self._joints, axis=0)
         weight = self._masks[stance]
-        result: Floats = np.zeros((len(groups), 3))
-        result[:, 0] = weight * lever[:, 1]
-        result[:, 1] = -weight * lever[:, 0]
+        result = self._result
+        np.multiply(weight, lever[:, 1], out=result[:, 0])
+        np.multiply(-weight, lever[:, 0], out=result[:, 1])
         return result

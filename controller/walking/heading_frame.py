@@ -2,8 +2,6 @@
 
 import math
 
-from hil.interface import Floats
-
 Pair = tuple[float, float]
 """Sagittal and lateral component, or world x and y."""
 
@@ -18,9 +16,9 @@ class HeadingFrame:
         """Turn to a heading [rad]."""
         self._c, self._s = math.cos(heading), math.sin(heading)
 
-    def to_heading(self, vector: Floats | Pair) -> Pair:
-        """Sagittal and lateral component of a world vector."""
-        x, y = float(vector[0]), float(vector[1])
+    def to_heading(self, vector: Pair) -> Pair:
+        """Sagittal and lateral component of world x and y."""
+        x, y = vector
         return self._c * x + self._s * y, self._c * y - self._s * x
 
     def to_world(self, vector: Pair) -> Pair:

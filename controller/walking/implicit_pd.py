@@ -82,6 +82,10 @@ class ImplicitPd:
         applied: Floats = self._applied[robot.dof_addresses]
         return applied
 
+    def note_applied(self, torques: Floats) -> None:
+        """Joint torques that are applied in place of what `correct` returned [N·m], (n,)."""
+        self._applied[self._robot.dof_addresses] = torques
+
     def _observed_force(self) -> Floats:
         """Generalised contact force of the last tick [N, N·m], shape (nv,)."""
         if self._last_velocity is None:

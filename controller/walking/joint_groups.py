@@ -73,11 +73,6 @@ class JointGroups:
         """Groups of one kind, left and right, shape (2,)."""
         return np.array([self.index(f"{side}_{kind}") for side in SIDES])
 
-    def anchors(self) -> Floats:
-        """Joint centres in the world [m], shape (groups, 3)."""
-        anchors: Floats = self._robot.data.xanchor[self.anchor_joint]
-        return anchors
-
     def descends(self) -> Bools:
         """Whether group a (row) is moved by group b (column), or is b, shape (groups, groups)."""
         parents = self._robot.model.body_parentid

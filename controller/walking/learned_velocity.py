@@ -7,9 +7,9 @@ force need not fight it and only holds the mean.
 
 import numpy as np
 
+from controller.walking.heading_frame import Pair
 from controller.walking.key_poses import CurveTable
 from controller.walking.torque_config import LearnedVelocityConfig
-from hil.interface import Floats
 
 
 class LearnedVelocity:
@@ -32,12 +32,13 @@ class LearnedVelocity:
         self._speed = np.zeros((capacity, 2))
         self._count = 0
 
-    def deviation(self, stance: int, phase: float) -> Floats:
-        """Learned deviation, sagittal and coronal [m/s], shape (2,)."""
-        return self._tables[stance].at(phase)
+    def deviation(self, stance: int, phase: float) -> Pair:
+        """Learned deviation, sagittal and coronal [m/s]."""
+        sagittal, coronal = self._tables[stance].at(phase).tolist()
+        return sagittal, coronal
 
-    def observe(self, phase: float, velocity: Floats) -> None:
-        """Record the speed of one tick [m/s], shape (2,)."""
+    def observe(self, phase: float, velocity: Pair) -> None:
+        """Record the speed of one tick [m/s]."""
         if self._count < len(self._phase):
             self._phase[self._count] = phase
             self._speed[self._count] = velocity

@@ -1,14 +1,14 @@
 """Closed-form kinematics of a six-joint leg with meeting hip axes and meeting ankle axes."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-
-import numpy as np
+from math import acos, asin, atan2, copysign, cos, remainder, sin, sqrt, tau
 
 from controller.robot_model import RobotModel
-from hil.interface import Floats
 
+Vector = tuple[float, float, float]
+Rows = Sequence[Sequence[float]]
+"""A rotation matrix as rows of plain numbers."""
 REACH = 0.999
 """A target beyond this share of the straight leg is moved in: the knee must not lock."""
 
@@ -34,7 +34,7 @@ class LegGeometry:
         """The leg of a robot, read from its model."""
         return cls(model.thigh_length, model.shank_length)
 
-    def solve(self, ankle: Sequence[float], foot: Sequence[Sequence[float]]) -> list[float]:
+    def solve(self, ankle: Sequence[float], foot: Rows) -> list[float]:
         """The six joint angles [rad].
 
         `ankle` is the ankle point seen from the hip centre in base axes [m], 3 numbers; `foot` the
@@ -48,23 +48,28 @@ class LegGeometry:
         z = -(px * r02 + py * r12 + pz * r22)
         thigh, shank = self.thigh, self.shank
         above_squared = y * y + z * z
-        squared = min(x * x + above_squared, (REACH * (thigh + shank)) ** 2)
-        cosine = (squared - thigh * thigh - shank * shank) / (2.0 * thigh * shank)
-        knee = math.acos(max(-1.0, min(cosine, 1.0)))
-        side = math.copysign(1.0, z)
-        ankle_roll = math.atan2(side * y, side * z)
-        lean = math.atan2(x, side * math.sqrt(above_squared))
-        bend = math.atan2(-thigh * math.sin(knee), shank + thigh * math.cos(knee))
-        ankle_pitch = bend - lean
-        c, s = math.cos(ankle_roll), math.sin(ankle_roll)
-        hip_yaw = math.atan2(r02 * s - r01 * c, r11 * c - r12 * s)
-        hip_roll = math.asin(max(-1.0, min(r21 * c - r22 * s, 1.0)))
-        pitch = math.atan2(-r20, r21 * s + r22 * c)
-        hip_pitch = math.remainder(pitch - knee - ankle_pitch, math.tau)
+        squared, reach = x * x + above_squared, REACH * (thigh + shank)
+        if squared > reach * reach:
+            squared = reach * reach
+        knee = acos(_unit((squared - thigh * thigh - shank * shank) / (2.0 * thigh * shank)))
+        side = copysign(1.0, z)
+        ankle_roll = atan2(side * y, side * z)
+        lean = atan2(x, side * sqrt(above_squared))
+        ankle_pitch = atan2(-thigh * sin(knee), shank + thigh * cos(knee)) - lean
+        c, s = cos(ankle_roll), sin(ankle_roll)
+        hip_yaw = atan2(r02 * s - r01 * c, r11 * c - r12 * s)
+        hip_roll = asin(_unit(r21 * c - r22 * s))
+        pitch = atan2(-r20, r21 * s + r22 * c)
+        hip_pitch = remainder(pitch - knee - ankle_pitch, tau)
         return [hip_yaw, hip_roll, hip_pitch, knee, ankle_pitch, ankle_roll]
 
 
-def yaw_rotation(angle: float) -> Floats:
-    """Rotation about z, shape (3, 3)."""
-    c, s = math.cos(angle), math.sin(angle)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+def _unit(value: float) -> float:
+    """A sine or cosine that rounding may have moved beyond ±1."""
+    return value if -1.0 <= value <= 1.0 else copysign(1.0, value)
+
+
+def yaw_rows(angle: float) -> Rows:
+    """Rotation about z."""
+    c, s = cos(angle), sin(angle)
+    return (c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0)

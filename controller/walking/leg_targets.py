@@ -1,16 +1,19 @@
 """Joint targets of both legs: an upright torso on the stance foot, the swing foot on its path."""
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from controller.robot_model import RobotModel
-from controller.walking.leg_kinematics import LegGeometry, yaw_rotation
+from controller.walking.heading_frame import Pair
+from controller.walking.leg_kinematics import LegGeometry, Rows, Vector, yaw_rows
 from hil.interface import Floats
 
 SPACING = 0.004
 """Distance of the three instants that give velocity and acceleration [s]."""
-INSTANTS = np.array([-SPACING, 0.0, SPACING])
+INSTANTS = (-SPACING, 0.0, SPACING)
 
 
 @dataclass(slots=True)
@@ -37,47 +40,67 @@ class LegPlanner:
     def __init__(self, model: RobotModel, hip_height: float) -> None:
         self._model = model
         self._geometry = LegGeometry.of(model)
-        hips = model.hip_positions - model.data.xpos[model.root_body]
-        self._hips: Floats = hips.copy()
-        self.ankle_height = float(model.ankle_positions[0, 2] - model.corner_positions[0, 0, 2])
+        hips = model.hip_positions - model.root_position
+        self._hips: list[list[float]] = hips.tolist()
+        self.ankle_height = float(model.ankles[0][2] - model.corner_positions[0, 0, 2])
         """Ankle point above the sole [m]."""
         self._stance_drop = hip_height - self.ankle_height
-        self._ankles: Floats = np.zeros((3, 2, 3))
-        self._feet: Floats = np.zeros((2, 3, 3))
+        self._ankles: list[list[Vector]] = [[], []]
+        self._feet: list[Rows] = [(), ()]
 
     def support(
-        self, leg: int, ankle: Floats, velocity: Floats, lead: float, heading: float, yaw: float
+        self, leg: int, ankle: Pair, velocity: Pair, lead: float, heading: float, yaw: float
     ) -> None:
         """Let a leg carry the torso.
 
-        `ankle` is the place of its ankle against the base origin and `velocity` that of the base,
-        both horizontal, world axes, shape (2,); `yaw` is the heading of the foot [rad].
+        `ankle` is the place of its ankle against the base origin [m] and `velocity` that of the
+        base [m/s], both horizontal, world axes; `yaw` is the heading of the foot [rad].
         """
-        towards_heading = yaw_rotation(-heading)
-        seen = ankle - (lead + INSTANTS)[:, None] * velocity
-        target = self._ankles[:, leg]
-        target[:, :2] = seen @ towards_heading[:2, :2].T - self._hips[leg, :2]
-        target[:, 2] = -self._stance_drop
-        self._feet[leg] = yaw_rotation(yaw - heading)
+        c, s = math.cos(heading), math.sin(heading)
+        (x, y), (u, v), (hip_x, hip_y, _) = ankle, velocity, self._hips[leg]
+        ankles = []
+        for instant in INSTANTS:
+            time = lead + instant
+            seen_x, seen_y = x - time * u, y - time * v
+            ankles.append(
+                (c * seen_x + s * seen_y - hip_x, c * seen_y - s * seen_x - hip_y,
+                 -self._stance_drop)
+            )  # fmt: skip
+        self._ankles[leg] = ankles
+        self._feet[leg] = yaw_rows(yaw - heading)
 
-    def swing(self, leg: int, points: Floats, velocity: Floats, lead: float, yaw: float) -> None:
-        """Let a leg reach for world points of its ankle, shape (3, 3), one per instant.
+    def swing(
+        self, leg: int, points: Sequence[Vector], velocity: Vector, lead: float, yaw: float
+    ) -> None:
+        """Let a leg reach for world points of its ankle [m], one per instant.
 
-        `velocity` is that of the base [m/s], shape (3,); `yaw` the heading of the foot [rad].
+        `velocity` is that of the base [m/s]; `yaw` the heading of the foot [rad].
         """
-        rotation = self._model.root_rotation
-        hip = self._model.hip_positions[leg]
-        seen = points - hip - (lead + INSTANTS)[:, None] * velocity
-        np.matmul(seen, rotation, out=self._ankles[:, leg])
-        self._feet[leg] = rotation.T @ yaw_rotation(yaw)
+        (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = self._model.root_rotation.tolist()
+        hip_x, hip_y, hip_z = self._model.hips[leg].tolist()
+        u, v, w = velocity
+        ankles = []
+        for (x, y, z), instant in zip(points, INSTANTS, strict=True):
+            time = lead + instant
+            x, y, z = x - hip_x - time * u, y - hip_y - time * v, z - hip_z - time * w
+            ankles.append(
+                (x * xx + y * yx + z * zx, x * xy + y * yy + z * zy, x * xz + y * yz + z * zz)
+            )
+        self._ankles[leg] = ankles
+        c, s = math.cos(yaw), math.sin(yaw)
+        self._feet[leg] = (
+            (xx * c + yx * s, yx * c - xx * s, zx),
+            (xy * c + yy * s, yy * c - xy * s, zy),
+            (xz * c + yz * s, yz * c - xz * s, zz),
+        )
 
     def solve(self) -> LegTargets:
         """Joint targets of both legs as they were set."""
-        solve, feet = self._geometry.solve, self._feet.tolist()
-        angles = [
-            [solve(ankle, foot) for ankle, foot in zip(ankles, feet, strict=True)]
-            for ankles in self._ankles.tolist()
-        ]
-        before, now, after = np.array(angles)
+        solve, (left, right) = self._geometry.solve, self._feet
+        angles: list[float] = []
+        for to_left, to_right in zip(*self._ankles, strict=True):
+            angles += solve(to_left, left)
+            angles += solve(to_right, right)
+        before, now, after = np.array(angles).reshape(3, 2, 6)
         velocity = (after - before) / (2.0 * SPACING)
         return LegTargets(now, velocity, (after - 2.0 * now + before) / SPACING**2)

@@ -1,11 +1,11 @@
 """The robot as a pendulum on its stance ankle, sagittal and lateral."""
 
 import math
+from collections.abc import Sequence
 
 from controller.robot_model import RobotModel
 from controller.walking.heading_frame import HeadingFrame, Pair
 from controller.walking.pendulum import Pendulum
-from hil.interface import Floats
 
 
 class PendulumState:
@@ -26,17 +26,18 @@ class PendulumState:
         self.capture: Pair = (0.0, 0.0)
         """[m]"""
 
-    def observe(self, ankle: Floats, frame: HeadingFrame, offset: float) -> None:
+    def observe(self, ankle: Sequence[float], frame: HeadingFrame, offset: float) -> None:
         """Take the model's state.
 
-        `ankle` is the stance ankle [m], (3,); `offset` is added to the sagittal place [m]: what
+        `ankle` is the stance ankle [m]; `offset` is added to the sagittal place [m]: what
         the com seems to be off, as steps of the wrong length tell.
         """
         model, pendulum = self._model, self.pendulum
-        com = model.com
-        pendulum.omega = math.sqrt(model.gravity / float(com[2]))
-        self.velocity = frame.to_heading(model.com_velocity)
-        x, y = frame.to_heading(com - ankle)
+        com_x, com_y, height = model.com.tolist()
+        pendulum.omega = math.sqrt(model.gravity / height)
+        u, v, _ = model.com_velocity.tolist()
+        self.velocity = frame.to_heading((u, v))
+        x, y = frame.to_heading((com_x - ankle[0], com_y - ankle[1]))
         u, v = self.velocity
         self.place = (x + self._lead * u + offset, y + self._lead * v)
         self.capture = (

@@ -12,7 +12,7 @@ from controller.walking.gait import Gait
 from controller.walking.joint_groups import JointGroups
 from controller.walking.key_poses import CurveTable
 from controller.walking.pose_tracking import PoseTracking
-from controller.walking.rotations import about_x, about_y, about_z
+from controller.walking.rotations import turn_about_y, yaw_pitch_roll
 from controller.walking.swing_leg import SwingLeg
 from controller.walking.torque_config import TorqueWalkingConfig
 from hil.description import RobotDescription
@@ -41,26 +41,29 @@ class PoseTargets:
         held = _start_pose(description, robot, groups)
         relative = tracking.relative[: len(groups)]
         tracking.target[: len(groups)][relative] = held[relative]
+        tracking.target[[*self._knees, *self._ankles]] = np.eye(3)  # they only turn about y
 
     def update(self, gait: Gait) -> float:
         """Set the targets of a phase; returns the drop of the swing ankle below its hip [m]."""
         tracking, sign = self._tracking, gait.stance_sign
-        root, yaw, pitch, roll, knee, stance_foot, swing_foot, drop = self._curves.at(gait.phase)
-        tracking.target[tracking.root] = about_y(root)
-        tracking.target[self._back] = about_z(sign * yaw) @ about_y(pitch) @ about_x(sign * roll)
-        tracking.target[self._knees[gait.stance]] = about_y(knee)
-        tracking.target[self._ankles[gait.stance]] = about_y(stance_foot)
-        tracking.target[self._ankles[gait.swing]] = about_y(swing_foot)
+        angles: list[float] = self._curves.at(gait.phase).tolist()
+        root, yaw, pitch, roll, knee, stance_foot, swing_foot, drop = angles
+        target, stance, swing = tracking.target, gait.stance, gait.swing
+        turn_about_y(target[tracking.root], root)
+        target[self._back] = yaw_pitch_roll(sign * yaw, pitch, sign * roll)
+        turn_about_y(target[self._knees[stance]], knee)
+        turn_about_y(target[self._ankles[stance]], stance_foot)
+        turn_about_y(target[self._ankles[swing]], swing_foot)
         tracking.target_rate[self._hips[gait.stance]] = 0.0
         tracking.target_rate[self._knees[gait.stance]] = 0.0
-        return float(drop)
+        return drop
 
     def set_swing_leg(self, swing: int, leg: SwingLeg) -> None:
         """Take over the inverse kinematics of the swing hip and knee."""
         tracking = self._tracking
         tracking.target[self._hips[swing]] = leg.hip
         tracking.target_rate[self._hips[swing]] = leg.hip_rate
-        tracking.target[self._knees[swing]] = about_y(leg.knee)
+        turn_about_y(tracking.target[self._knees[swing]], leg.knee)
         tracking.target_rate[self._knees[swing], 1] = leg.knee_rate
 
 

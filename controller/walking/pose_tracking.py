@@ -53,31 +53,33 @@ class PoseTracking:
         """Target angular velocities ω* in the tracking frames [rad/s]."""
         self.frames = np.tile(np.eye(3), (count, 1, 1))
         """Tracking frames R_f, frame to world."""
+        self._absolute = np.flatnonzero(~self.relative)
+        self._orientations: Floats = robot.data.xmat.reshape(-1, 3, 3)
         self._last_root_rate = np.zeros(3)
 
     def set_frames(self, heading: Floats, special: Mapping[int, Floats]) -> None:
         """Place the tracking frames; `special` gives rows a frame of their own."""
-        self.frames[:] = self._robot.data.xmat[self._parent].reshape(-1, 3, 3)
-        self.frames[~self.relative] = heading
+        np.take(self._orientations, self._parent, axis=0, out=self.frames, mode="clip")
+        self.frames[self._absolute] = heading
         for row, frame in special.items():
             self.frames[row] = frame
 
     def torques(self) -> Floats:
         """World torque vectors of all rows [N·m], shape (groups + 1, 3)."""
-        data = self._robot.data
-        child = data.xmat[self._child].reshape(-1, 3, 3)
-        to_frame = self.frames.transpose(0, 2, 1)
-        error = rotation_vectors(self.target @ (child.transpose(0, 2, 1) @ self.frames))
-        omega = data.cvel[self._child, :3]
+        rates, frames = self._robot.angular_velocities, self.frames
+        child = self._orientations.take(self._child, axis=0)
+        error = rotation_vectors(self.target @ (child.transpose(0, 2, 1) @ frames))
+        omega = rates.take(self._child, axis=0)
         root_rate = omega[self.root].copy()
         omega[self.root] = 0.5 * (root_rate + self._last_root_rate)
         self._last_root_rate = root_rate
-        omega -= self._weights * data.cvel[self._parent, :3]
-        rate = self.target_rate - (to_frame @ omega[:, :, None])[:, :, 0]
+        omega -= self._weights * rates.take(self._parent, axis=0)
+        rate = self.target_rate - np.vecmat(omega, frames)
         if self._lead:
             error += self._lead * rate
-        local = self.stiffness * error + self.damping * rate
-        torque: Floats = (self.frames @ local[:, :, None])[:, :, 0]
+        local = self.stiffness * error
+        local += self.damping * rate
+        torque: Floats = np.matvec(frames, local)
         return torque
 
 

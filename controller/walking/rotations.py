@@ -19,15 +19,35 @@ def about_y(angle: float) -> Floats:
     return np.array(((c, 0.0, s), (0.0, 1.0, 0.0), (-s, 0.0, c)))
 
 
+def turn_about_y(rotation: Floats, angle: float) -> None:
+    """Make a rotation about y of one that already is, shape (3, 3), one by `angle` [rad]."""
+    rotation[0, 0] = rotation[2, 2] = math.cos(angle)
+    rotation[0, 2] = sine = math.sin(angle)
+    rotation[2, 0] = -sine
+
+
+def yaw_pitch_roll(yaw: float, pitch: float, roll: float) -> list[list[float]]:
+    """Rows of R_z(yaw)·R_y(pitch)·R_x(roll), angles in rad."""
+    cy, sy, cp, sp = math.cos(yaw), math.sin(yaw), math.cos(pitch), math.sin(pitch)
+    cr, sr = math.cos(roll), math.sin(roll)
+    return [
+        [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+        [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+        [-sp, cp * sr, cp * cr],
+    ]
+
+
 def about_z(angle: float) -> Floats:
     """Rotation by an angle [rad] about z, shape (3, 3)."""
     c, s = math.cos(angle), math.sin(angle)
     return np.array(((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0)))
 
 
-_POSITIVE = np.array([7, 2, 3])
-_NEGATIVE = np.array([5, 6, 1])
-"""Where a flattened matrix has the two halves of its skew part."""
+_SKEW_AND_TRACE = np.zeros((9, 4))
+"""From a flattened matrix to half its skew part and half its trace."""
+_SKEW_AND_TRACE[[7, 2, 3], [0, 1, 2]] = 0.5
+_SKEW_AND_TRACE[[5, 6, 1], [0, 1, 2]] = -0.5
+_SKEW_AND_TRACE[[0, 4, 8], 3] = 0.5
 _TINY = 1e-12
 """Below this sine θ/sin θ is 1."""
 
@@ -38,19 +58,20 @@ def rotation_vectors(rotations: Floats) -> Floats:
     With the skew part s = sin θ·axis and cos θ = (trace − 1)/2 the vector is s·θ/sin θ; the
     angle must stay below π.
     """
-    flat = rotations.reshape(-1, 9)
-    skew: Floats = 0.5 * (flat[:, _POSITIVE] - flat[:, _NEGATIVE])
-    sine = np.sqrt(np.einsum("ij,ij->i", skew, skew))
+    parts = rotations.reshape(-1, 9) @ _SKEW_AND_TRACE
+    skew: Floats = parts[:, :3]
+    sine = np.sqrt(np.vecdot(skew, skew))
     np.maximum(sine, _TINY, out=sine)
-    cosine = 0.5 * (flat[:, 0] + flat[:, 4] + flat[:, 8] - 1.0)
-    skew *= (np.arctan2(sine, cosine) / sine)[:, None]
+    factor = np.arctan2(sine, parts[:, 3] - 0.5)
+    factor /= sine
+    skew *= factor[:, None]
     return skew
 
 
 def small_rotation_vector(rotation: Floats) -> Floats:
     """Axis times sin θ of one rotation of shape (3, 3): its logarithm up to θ³/6, shape (3,)."""
-    r = rotation
-    return 0.5 * np.array((r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1]))
+    (_, xy, xz), (yx, _, yz), (zx, zy, _) = rotation.tolist()
+    return np.array((0.5 * (zy - yz), 0.5 * (xz - zx), 0.5 * (yx - xy)))
 
 
 def heading_of(rotation: Floats) -> float:

@@ -2,8 +2,6 @@
 
 import math
 
-import numpy as np
-
 from controller.robot_model import RobotModel
 from controller.walking.alteration import Alteration
 from controller.walking.balance import Balance
@@ -13,10 +11,11 @@ from controller.walking.gait import Gait
 from controller.walking.heading import HeadingRamp
 from controller.walking.heading_frame import HeadingFrame, Pair
 from controller.walking.pendulum_state import PendulumState
+from controller.walking.rotations import heading_of
 from controller.walking.servo_config import ServoWalkingConfig
 from controller.walking.step_average import StepAverage
 from controller.walking.step_timing import remaining_time
-from hil.interface import Estimate, Floats, Reference
+from hil.interface import Estimate, Reference
 
 MAX_SPEEDUP = 2.5
 """How much faster than nominal the phase may run when landing is urgent."""
@@ -25,7 +24,7 @@ MAX_SPEEDUP = 2.5
 class ServoStep:
     """Gait, commands, pendulum state, centre of pressure, timing and landing point, tick by tick.
 
-    Attributes belong to the last `update`; vectors of shape (2,) are world x and y.
+    Attributes belong to the last `update`; pairs are world x and y.
     """
 
     def __init__(
@@ -36,7 +35,7 @@ class ServoStep:
         self._dt = 1.0 / rate_hz
         self.gait = Gait(config.gait, model.weight)
         self.heading_ramp = HeadingRamp(config.heading)
-        self._command = CommandRamp(config.command, np.zeros(2))
+        self._command = CommandRamp(config.command)
         self._alteration = Alteration(config.alteration)
         self._mean_speed = StepAverage()
         self.frame = HeadingFrame()
@@ -49,11 +48,11 @@ class ServoStep:
         self._begun = False
         self.phase_rate = 1.0 / config.gait.period
         """dφ/dt [1/s]."""
-        self.ankle: Floats = np.zeros(3)
+        self.ankle: list[float] = [0.0, 0.0, 0.0]
         """Stance ankle in the world [m]."""
-        self.lift_off: Floats = np.zeros(2)
+        self.lift_off: Pair = (0.0, 0.0)
         """Where the swing ankle left the ground, from the stance ankle [m]."""
-        self.landing: Floats = np.zeros(2)
+        self.landing: Pair = (0.0, 0.0)
         """Where it will land, from the stance ankle [m]."""
 
     @property
@@ -65,10 +64,10 @@ class ServoStep:
         """Bring the step to the estimate's time."""
         self._advance(estimate, reference)
         gait, state = self.gait, self.state
-        corners = estimate.foot_force[gait.stance]
-        loaded = corners > gait.config.flat_corner_load * gait.weight
-        gait.update_foot_flat(int(np.count_nonzero(loaded)))
-        self.ankle[:] = self._model.ankle_positions[gait.stance]
+        corners: list[float] = estimate.foot_force[gait.stance].tolist()
+        loaded = gait.config.flat_corner_load * gait.weight
+        gait.update_foot_flat(sum(force > loaded for force in corners))
+        self.ankle = self._model.ankles[gait.stance].tolist()
         state.observe(self.ankle, self.frame, self._alteration.value)
         self._mean_speed.add(state.velocity[0])
         sway = -gait.stance_sign * self._width
@@ -85,7 +84,7 @@ class ServoStep:
                 remaining,
                 gait.stance_sign,
             )
-            self.landing[:] = self.frame.to_world(point)
+            self.landing = self.frame.to_world(point)
 
     def swing_yaw(self) -> float:
         """Heading of the swing foot: it turns into the torso's during the swing [rad]."""
@@ -95,11 +94,10 @@ class ServoStep:
     def _advance(self, estimate: Estimate, reference: Reference) -> None:
         """Gait and commands one tick on."""
         gait, dt = self.gait, self._dt
-        speed = self._command.update(dt, reference.speed, reference.lateral)
-        self._speed = (float(speed[0]), float(speed[1]))
+        self._speed = self._command.update(dt, reference.speed, reference.lateral)
         width = reference.step_width
         self._width = self._config.placement.step_width if math.isnan(width) else width
-        load = float(estimate.foot_force[gait.swing].sum())
+        load = sum(estimate.foot_force[gait.swing].tolist())
         ended = gait.advance(dt, load, self.phase_rate * gait.config.period)
         if ended:
             self._alteration.end_step(self._mean_speed.finish(), self._speed[0])
@@ -110,11 +108,10 @@ class ServoStep:
     def _begin_step(self) -> None:
         """Remember where the swing foot leaves."""
         self._begun = True
-        ankles, swing = self._model.ankle_positions, self.gait.swing
-        self.lift_off[:] = ankles[swing, :2] - ankles[self.gait.stance, :2]
-        self.landing[:] = self.lift_off
-        rotation = self._model.foot_rotations[swing]
-        self._lift_off_yaw = math.atan2(rotation[1, 0], rotation[0, 0])
+        model, gait = self._model, self.gait
+        x, y, _ = (model.ankles[gait.swing] - model.ankles[gait.stance]).tolist()
+        self.lift_off = self.landing = (x, y)
+        self._lift_off_yaw = heading_of(model.feet[gait.swing])
 
     def _set_phase_rate(self, goal: float) -> float:
         """Let the phase end when the lateral capture point is at `goal` [m].

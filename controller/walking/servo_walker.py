@@ -6,13 +6,13 @@ close a stiff position loop: horizontal freedom of the stance leg comes from tar
 the measured place of the torso, and the virtual force acts as a centre of pressure.
 """
 
-import math
-
 import mujoco
 import numpy as np
 
 from controller.robot_model import RobotModel
+from controller.walking.leg_kinematics import Vector
 from controller.walking.leg_targets import INSTANTS, LegPlanner, LegTargets
+from controller.walking.rotations import heading_of
 from controller.walking.servo_config import servo_walking_config
 from controller.walking.servo_step import ServoStep
 from controller.walking.support_force import SupportForce
@@ -60,10 +60,10 @@ class ServoWalker:
         step = self._step
         step.update(estimate, reference)
         targets = self._walk(estimate)
-        points, forces = step.balance.ground_reaction(
+        reactions = step.balance.ground_reaction(
             step.state.place, step.gait, step.frame, self._planner.ankle_height
         )
-        torque = self.config.balance.torque_gain * self._force.torques(points, forces)
+        torque = self.config.balance.torque_gain * self._force.torques(reactions)
         swing = step.gait.swing
         torque[self._legs[swing]] += (
             self.config.balance.inertia_gain * self._inertia * targets.acceleration[swing]
@@ -75,38 +75,39 @@ class ServoWalker:
         """Both legs carry the torso, which moves above the first stance foot."""
         shift, model, planner = self._shift, self._model, self._planner
         place, velocity = shift.update(self._dt, model)
-        feet = model.ankle_positions[:, :2]
-        for leg in range(2):
-            planner.support(leg, feet[leg] - place, velocity, self._lead, 0.0, self._foot_yaw(leg))
-        points, forces = shift.ground_reaction(model, self._planner.ankle_height)
-        torque = self.config.balance.torque_gain * self._force.torques(points, forces)
+        for leg, ankle in enumerate(model.ankles):
+            x, y, _ = ankle.tolist()
+            seen = (x - place[0], y - place[1])
+            yaw = heading_of(model.feet[leg])
+            planner.support(leg, seen, velocity, self._lead, 0.0, yaw)
+        reactions = shift.ground_reaction(model, planner.ankle_height)
+        torque = self.config.balance.torque_gain * self._force.torques(reactions)
         return self._fill(planner.solve(), torque)
 
     def _walk(self, estimate: Estimate) -> LegTargets:
-        step, planner, model = self._step, self._planner, self._model
-        stance, swing = step.gait.stance, step.gait.swing
-        velocity = estimate.base_linear_velocity
-        ankle = model.ankle_positions[stance, :2] - estimate.base_position[:2]
-        yaw = self._foot_yaw(stance)
+        step, planner, lead = self._step, self._planner, self._lead
+        stance = step.gait.stance
+        u, v, w = estimate.base_linear_velocity.tolist()
+        base_x, base_y, _ = estimate.base_position.tolist()
+        ankle = (step.ankle[0] - base_x, step.ankle[1] - base_y)
+        yaw = heading_of(self._model.feet[stance])
         limit = self.config.yaw_limit
         heading = yaw + max(-limit, min(step.heading - yaw, limit))
-        planner.support(stance, ankle, velocity[:2], self._lead, heading, yaw)
-        planner.swing(swing, self._swing_points(), velocity, self._lead, step.swing_yaw())
+        planner.support(stance, ankle, (u, v), lead, heading, yaw)
+        planner.swing(step.gait.swing, self._swing_points(), (u, v, w), lead, step.swing_yaw())
         return planner.solve()
 
-    def _swing_points(self) -> Floats:
-        """World points of the swing ankle at the three instants, shape (3, 3)."""
-        step = self._step
-        phase = step.gait.phase + step.phase_rate * (self._lead + INSTANTS)
-        points = np.empty((3, 3))
-        points[:, :2] = self._swing.horizontal(phase, step.lift_off, step.landing)
-        points[:, :2] += step.ankle[:2]
-        points[:, 2] = self._planner.ankle_height + self._swing.lift(phase, 1.0 / step.phase_rate)
+    def _swing_points(self) -> list[Vector]:
+        """World points of the swing ankle at the three instants [m]."""
+        step, swing = self._step, self._swing
+        rate, period = step.phase_rate, 1.0 / step.phase_rate
+        points = []
+        for instant in INSTANTS:
+            phase = step.gait.phase + rate * (self._lead + instant)
+            x, y = swing.horizontal(phase, step.lift_off, step.landing)
+            height = self._planner.ankle_height + swing.lift(phase, period)
+            points.append((x + step.ankle[0], y + step.ankle[1], height))
         return points
-
-    def _foot_yaw(self, foot: int) -> float:
-        rotation = self._model.foot_rotations[foot]
-        return math.atan2(rotation[1, 0], rotation[0, 0])
 
     def _fill(self, targets: LegTargets, torque: Floats) -> JointCommand:
         command = self._command
@@ -134,8 +135,8 @@ class ServoWalker:
         status.steps = step.gait.steps
         status.foot_flat = step.gait.foot_flat
         status.heading = step.heading
-        status.foot_target[:2] = step.ankle[:2] + step.landing
-        status.foot_target[2] = self._planner.ankle_height
+        (x, y, _), (ahead_x, ahead_y) = step.ankle, step.landing
+        status.foot_target[:] = (x + ahead_x, y + ahead_y, self._planner.ankle_height)
 
 
 def _leg_joints(description: RobotDescription) -> Ints:

@@ -10,6 +10,7 @@ from controller.walking.command_ramp import CommandRamp
 from controller.walking.foot_placement import FootPlacement
 from controller.walking.gait import Gait
 from controller.walking.heading import HeadingRamp
+from controller.walking.heading_frame import HeadingFrame, Pair
 from controller.walking.learned_velocity import LearnedVelocity
 from controller.walking.rotations import about_z, heading_of
 from controller.walking.step_average import StepAverage
@@ -20,7 +21,7 @@ from hil.interface import Estimate, Floats, Reference
 class StepPlanner:
     """Gait, heading, commanded and learned speed, and foot placement, tick by tick.
 
-    Its attributes belong to the last `update`; vectors of shape (2,) are sagittal and coronal.
+    Its attributes belong to the last `update`; pairs are sagittal and coronal.
     """
 
     def __init__(
@@ -30,14 +31,16 @@ class StepPlanner:
         self._dt = dt
         self.gait = Gait(config.gait, robot.weight)
         self.heading_ramp = HeadingRamp(config.heading)
-        self._command = CommandRamp(config.command, np.array([speed, 0.0]))
+        self._command = CommandRamp(config.command, (speed, 0.0))
         self._placement = FootPlacement(config.placement, robot.leg_length, robot.gravity)
         self._own_width = 2.0 * config.placement.half_width
         self.alteration = Alteration(config.alteration)
         self._average = StepAverage()
         longest = config.gait.max_phase * config.gait.period / dt
         self._learned = LearnedVelocity(config.learned_velocity, math.ceil(longest) + 1)
-        self._swing_start = np.zeros(2)
+        self._frame = HeadingFrame()
+        self._angle = 0.0
+        self._swing_start: Pair = (0.0, 0.0)
         self._first = True
         self.new_step = True
         """This tick is the first of its step."""
@@ -45,11 +48,11 @@ class StepPlanner:
         """Heading frame to world, shape (3, 3)."""
         self.foot_heading: Floats | None = None
         """Heading frame of the stance foot, from the moment when it lies flat."""
-        self.velocity = np.zeros(2)
+        self.velocity: Pair = (0.0, 0.0)
         """Of the centre of mass in the heading frame [m/s]."""
-        self.wanted = np.zeros(2)
+        self.wanted: Pair = (0.0, 0.0)
         """Speed for the virtual force: commanded plus learned deviation [m/s]."""
-        self.foot_target = np.zeros(3)
+        self.foot_target = [0.0, 0.0, 0.0]
         """World target of the swing ankle [m]; the height is left to the caller."""
 
     def update(self, estimate: Estimate, loads: Floats, reference: Reference) -> None:
@@ -59,43 +62,54 @@ class StepPlanner:
         stance = gait.stance
         ended = gait.advance(self._dt, float(loads[gait.swing]))
         if ended:
-            self.alteration.end_step(self._average.finish(), float(command[0]))
+            self.alteration.end_step(self._average.finish(), command[0])
             self._learned.end_step(stance, learn=not self.heading_ramp.turning)
-        self.heading = about_z(self.heading_ramp.update(self._dt, gait, reference.heading))
+        self._turn(self.heading_ramp.update(self._dt, gait, reference.heading))
         self.new_step = ended or self._first
         self._first = False
         if self.new_step:
             self._begin_step()
         self._latch_flat_foot(estimate.foot_force[gait.stance])
-        self.velocity = self.heading.T[:2] @ robot.com_velocity
-        self._average.add(float(self.velocity[0]))
+        u, v, _ = robot.com_velocity.tolist()
+        self.velocity = self._frame.to_heading((u, v))
+        self._average.add(self.velocity[0])
         self._learned.observe(gait.phase, self.velocity)
-        self.wanted = command + self._learned.deviation(gait.stance, gait.phase)
+        sagittal, coronal = self._learned.deviation(gait.stance, gait.phase)
+        self.wanted = (command[0] + sagittal, command[1] + coronal)
         self._place_foot(command, reference.step_width)
+
+    def _turn(self, angle: float) -> None:
+        """Set the heading frame [rad]."""
+        if angle != self._angle:
+            self._angle = angle
+            self.heading = about_z(angle)
+            self._frame.set(angle)
 
     def _begin_step(self) -> None:
         """Remember where the swing foot leaves; the new stance foot has yet to lie flat."""
         robot = self._robot
-        offset = robot.ankle_positions[self.gait.swing] - robot.com
-        self._swing_start = self.heading.T[:2] @ offset
+        x, y, _ = (robot.ankles[self.gait.swing] - robot.com).tolist()
+        self._swing_start = self._frame.to_heading((x, y))
         self.foot_heading = None
 
     def _latch_flat_foot(self, corners: Floats) -> None:
         gait = self.gait
-        gait.update_foot_flat(int((corners > gait.config.flat_corner_load * gait.weight).sum()))
+        loaded = gait.config.flat_corner_load * gait.weight
+        gait.update_foot_flat(sum(force > loaded for force in corners.tolist()))
         if gait.foot_flat and self.foot_heading is None:
-            self.foot_heading = about_z(heading_of(self._robot.foot_rotations[gait.stance]))
+            self.foot_heading = about_z(heading_of(self._robot.feet[gait.stance]))
 
-    def _place_foot(self, command: Floats, step_width: float) -> None:
+    def _place_foot(self, command: Pair, step_width: float) -> None:
         robot, gait = self._robot, self.gait
-        com = robot.com
+        x, y, height = robot.com.tolist()
         width = self._own_width if math.isnan(step_width) else step_width
         landing = self._placement.distance(
             self.velocity,
-            float(com[2] - robot.ankle_positions[gait.stance, 2]),
+            height - float(robot.ankles[gait.stance][2]),
             command,
             self.alteration.value,
             -gait.stance_sign * 0.5 * width,
         )
         offset = self._placement.blend(gait.phase, landing, self._swing_start)
-        self.foot_target[:] = com + self.heading[:, :2] @ offset
+        ahead_x, ahead_y = self._frame.to_world(offset)
+        self.foot_target[:2] = x + ahead_x, y + ahead_y

@@ -1,10 +1,25 @@
 """Feed-forward torques of the legs: gravity, and the ground reaction that the pendulum asks for."""
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import mujoco
 import numpy as np
 
 from controller.robot_model import RobotModel
 from hil.interface import Floats
+
+
+@dataclass(slots=True)
+class SoleForce:
+    """A ground reaction on one foot, world axes."""
+
+    foot: int
+    """0 left, 1 right."""
+    point: Floats
+    """On the sole [m], shape (3,)."""
+    force: Floats
+    """[N], shape (3,)."""
 
 
 class SupportForce:
@@ -16,14 +31,16 @@ class SupportForce:
 
     def __init__(self, model: RobotModel) -> None:
         self._model = model
+        self._bodies = model.foot_bodies.tolist()
         self._bias: Floats = np.zeros(model.model.nv)
         self._jacobian: Floats = np.zeros((3, model.model.nv))
 
-    def torques(self, points: Floats, forces: Floats) -> Floats:
-        """Joint torques [N·m], shape (n,), for sole points [m] and ground reactions [N], (2, 3)."""
+    def torques(self, reactions: Sequence[SoleForce]) -> Floats:
+        """Joint torques [N·m], shape (n,); a foot that is not named carries nothing."""
         model, data, bias = self._model.model, self._model.data, self._bias
         mujoco.mj_rne(model, data, 0, bias)
-        for body, point, force in zip(self._model.foot_bodies, points, forces, strict=True):
-            mujoco.mj_jac(model, data, self._jacobian, None, point, body)
-            bias -= force @ self._jacobian
+        for reaction in reactions:
+            body = self._bodies[reaction.foot]
+            mujoco.mj_jac(model, data, self._jacobian, None, reaction.point, body)
+            bias -= reaction.force @ self._jacobian
         return bias[self._model.dof_addresses]

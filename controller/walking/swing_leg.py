@@ -5,6 +5,7 @@ of the inverted pendulum model. Two links, closed form.
 """
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,36 +25,40 @@ class LegLinks:
 
 
 def two_link(
-    links: LegLinks, hip: Floats, ankle: Floats, lateral: Floats, reach: float
+    links: LegLinks,
+    hip: Sequence[float],
+    ankle: Sequence[float],
+    lateral: Sequence[float],
+    reach: float,
 ) -> tuple[Floats, float]:
     """World orientation of the thigh, shape (3, 3), and knee angle [rad] that reach an ankle.
 
     The hip-ankle distance is limited to `reach` of the straight leg. With sides a (thigh),
     b (shank) and distance L, the law of cosines gives the angle α between thigh and hip-ankle
     line and the flexion β: cos α = (a² + L² − b²)/(2aL), cos β = (L² − a² − b²)/(2ab). The knee
-    axis is `lateral` made orthogonal to the hip-ankle line; the knee points forward.
+    axis is `lateral` made orthogonal to the hip-ankle line; the knee points forward. Plain numbers:
+    on three of them array operations cost ten times as much.
     """
     a, b = links.thigh, links.shank
-    line = ankle - hip
-    distance = math.sqrt(float(line @ line))
-    down = line / distance
+    x, y, z = ankle[0] - hip[0], ankle[1] - hip[1], ankle[2] - hip[2]
+    distance = math.sqrt(x * x + y * y + z * z)
+    x, y, z = x / distance, y / distance, z / distance
     length = min(max(distance, 1.001 * abs(a - b) + 1e-3 * a), reach * (a + b))
-    alpha = math.acos((a * a + length * length - b * b) / (2.0 * a * length))
+    cosine = (a * a + length * length - b * b) / (2.0 * a * length)
     beta = math.acos((length * length - a * a - b * b) / (2.0 * a * b))
-    axis = lateral - float(lateral @ down) * down
-    axis /= math.sqrt(float(axis @ axis))
-    forward = np.array(
-        (
-            down[1] * axis[2] - down[2] * axis[1],
-            down[2] * axis[0] - down[0] * axis[2],
-            down[0] * axis[1] - down[1] * axis[0],
-        )
-    )
-    thigh = math.cos(alpha) * down + math.sin(alpha) * forward
-    ahead = math.cos(alpha) * forward - math.sin(alpha) * down
-    rotation = np.empty((3, 3))
-    rotation[:, 0], rotation[:, 1], rotation[:, 2] = ahead, axis, -thigh
-    return rotation, beta + links.knee_offset
+    alpha = math.acos(cosine)
+    c, s = math.cos(alpha), math.sin(alpha)
+    u, v, w = lateral
+    along = u * x + v * y + w * z
+    u, v, w = u - along * x, v - along * y, w - along * z
+    size = math.sqrt(u * u + v * v + w * w)
+    u, v, w = u / size, v / size, w / size
+    ahead = (y * w - z * v, z * u - x * w, x * v - y * u)
+    rotation = [
+        (c * forward - s * down, axis, -c * down - s * forward)
+        for forward, axis, down in zip(ahead, (u, v, w), (x, y, z), strict=True)
+    ]
+    return np.array(rotation), beta + links.knee_offset
 
 
 class SwingLeg:
@@ -80,7 +85,13 @@ class SwingLeg:
         """Forget the other leg's targets."""
         self._last = None
 
-    def update(self, hip: Floats, ankle: Floats, lateral: Floats, pelvis: Floats) -> None:
+    def update(
+        self,
+        hip: Sequence[float],
+        ankle: Sequence[float],
+        lateral: Sequence[float],
+        pelvis: Floats,
+    ) -> None:
         """Targets that bring the ankle to a world position, `pelvis` being its orientation."""
         thigh, self.knee = two_link(self._links, hip, ankle, lateral, self._config.reach)
         self.hip = pelvis.T @ thigh
@@ -89,7 +100,8 @@ class SwingLeg:
         if self._last is not None:
             limit = self._config.rate_limit
             turn = small_rotation_vector(self.hip @ self._last[0].T) / self._dt
-            np.minimum(np.maximum(turn, -limit), limit, out=self.hip_rate)
+            np.maximum(turn, -limit, out=turn)
+            np.minimum(turn, limit, out=self.hip_rate)
             rate = (self.knee - self._last[1]) / self._dt
             self.knee_rate = min(max(rate, -limit), limit)
         self._last = (self.hip, self.knee)

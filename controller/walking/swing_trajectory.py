@@ -1,11 +1,10 @@
 """Path of the swing foot over the phase of a step."""
 
+import math
 from dataclasses import dataclass
 
-import numpy as np
-
+from controller.walking.heading_frame import Pair
 from controller.walking.servo_config import SwingConfig
-from hil.interface import Floats
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,15 +21,16 @@ class SwingTrajectory:
     config: SwingConfig
     """H = height, a = flatness, φ_l = landing_phase, v_s = search_speed."""
 
-    def horizontal(self, phase: Floats, start: Floats, target: Floats) -> Floats:
-        """Points at phases of shape (k,), between points of shape (2,): shape (k, 2) [m]."""
-        u = np.minimum(np.maximum(phase / self.config.landing_phase, 0.0), 1.0)
+    def horizontal(self, phase: float, start: Pair, target: Pair) -> Pair:
+        """Place at a phase between two points [m]."""
+        u = min(max(phase / self.config.landing_phase, 0.0), 1.0)
         share = u * u * u * (10.0 + u * (6.0 * u - 15.0))
-        return start + share[:, None] * (target - start)
+        (x, y), (to_x, to_y) = start, target
+        return x + share * (to_x - x), y + share * (to_y - y)
 
-    def lift(self, phase: Floats, period: float) -> Floats:
-        """Heights above the ground at phases of shape (k,) [m]; `period` is 1/φ̇ [s]."""
-        angle, a = 2.0 * np.pi * np.minimum(phase, 1.0), self.config.flatness
-        wave = 1.0 - np.cos(angle) + a / 3.0 * (1.0 - np.cos(3.0 * angle))
+    def lift(self, phase: float, period: float) -> float:
+        """Height above the ground at a phase [m]; `period` is 1/φ̇ [s]."""
+        angle, a = math.tau * min(phase, 1.0), self.config.flatness
+        wave = 1.0 - math.cos(angle) + a / 3.0 * (1.0 - math.cos(3.0 * angle))
         raised = self.config.height * wave / (2.0 + a * 2.0 / 3.0)
-        return raised - self.config.search_speed * period * np.maximum(phase - 1.0, 0.0)
+        return raised - self.config.search_speed * period * max(phase - 1.0, 0.0)

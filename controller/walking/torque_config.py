@@ -10,6 +10,7 @@ from controller.walking.foot_placement import FootPlacementConfig
 from controller.walking.gait import GaitConfig
 from controller.walking.heading import HeadingConfig
 from controller.walking.key_poses import Knots
+from controller.walking.stabilizer.config import StabilizerConfig
 from hil.validation import Config
 
 Vector3 = tuple[float, float, float]
@@ -105,6 +106,9 @@ class TorqueWalkingConfig(Config):
     learned_velocity: LearnedVelocityConfig
     root_balance: RootBalanceConfig
     ankle_limit: AnkleLimitConfig
+    ankle_guards: bool = False
+    """Guard the ankles by the rules of the first author's stored code (`ankle_guards`)."""
+    stabilizer: StabilizerConfig = StabilizerConfig()
     tracking: dict[str, TrackingConfig]
     """By joint: the name without side and axis, `back`, `hip`, `ankle`."""
     side_scales: dict[str, Vector3]

@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 
 from controller.robot_model import RobotModel
+from controller.walking.ankle_guards import AnkleGuards
 from controller.walking.ankle_limit import limited, sole_levers
 from controller.walking.gravity_compensation import GravityCompensation
 from controller.walking.implicit_pd import ImplicitPd
@@ -51,17 +52,23 @@ class TorqueLaw:
         )
         self._levers = [sole_levers(robot, description.feet[side]) for side in SIDES]  # type: ignore[index]
         self._limit_ankle = ankle_limit
-        self._ankle_joints = np.array(
-            [[description.joint_names.index(f"{side}_ankle_{axis}") for axis in ("pitch", "roll")]
-             for side in SIDES]
-        )  # fmt: skip
+        self._ankle_joints = [
+            [description.joint_names.index(f"{side}_ankle_{axis}") for axis in ("pitch", "roll")]
+            for side in SIDES
+        ]
+        self._guards = AnkleGuards(robot) if config.ankle_guards else None
         self._last_loads = np.zeros(2)
 
-    def torques(self, plan: StepPlanner, loads: Floats) -> Floats:
-        """Torques of all joints [N·m], shape (n,); `loads` are vertical forces on the feet [N]."""
+    def torques(self, plan: StepPlanner, loads: Floats, forefeet: Floats) -> Floats:
+        """Torques of all joints [N·m], shape (n,).
+
+        `loads` are the vertical forces on the feet, `forefeet` their part on front corners and
+        toe [N], shape (2,).
+        """
         gait, tracking = plan.gait, self.tracking
-        feet = {int(self._ankles[gait.stance]): plan.foot_heading}
-        tracking.set_frames(plan.heading, {r: f for r, f in feet.items() if f is not None})
+        foot = plan.foot_heading
+        flat = {} if foot is None else {int(self._ankles[gait.stance]): foot}
+        tracking.set_frames(plan.heading, flat)
         vectors = tracking.torques()
         shares = stance_share(float(loads[gait.stance]), float(loads[gait.swing]))
         hips = (int(self._hips[gait.stance]), int(self._hips[gait.swing]))
@@ -69,7 +76,7 @@ class TorqueLaw:
         torque = vectors[: len(self.groups)]
         torque += self._gravity.torques(gait.stance)
         if gait.foot_flat:
-            self._push_body(torque, plan, loads)
+            self._push_body(torque, plan, loads, forefeet)
         self._last_loads = loads
         axes = self._robot.joint_axes
         joints = self.groups.project(torque, axes)
@@ -91,13 +98,38 @@ class TorqueLaw:
         torques[stance] = shares[0] * moment + hip_damping(self._config.root_balance, relative)
         torques[swing] += shares[1] * moment
 
-    def _push_body(self, torques: Floats, plan: StepPlanner, loads: Floats) -> None:
+    def note_applied(self, torques: Floats) -> None:
+        """Joint torques that are applied in place of what `torques` returned [N·m], (n,)."""
+        if self._implicit is not None:
+            self._implicit.note_applied(torques)
+
+    def _push_body(
+        self, torques: Floats, plan: StepPlanner, loads: Floats, forefeet: Floats
+    ) -> None:
         """Virtual force on the body, carried by the legs in proportion to two ticks' loads."""
         carried = loads + self._last_loads
         total = float(carried.sum())
         if total > 0.0:
+            before = None if self._guards is None else torques[self._ankles]
             force = self._virtual.force(plan.wanted, plan.velocity, plan.heading)
             self._virtual.add_torques(torques, force, carried / total)
+            if self._guards is not None and before is not None:
+                self._guard(self._guards, torques, before, plan, forefeet)
+
+    def _guard(
+        self,
+        guards: AnkleGuards,
+        torques: Floats,
+        before: Floats,
+        plan: StepPlanner,
+        forefeet: Floats,
+    ) -> None:
+        """Withdraw from the ankles what the virtual force added to `before` and may not."""
+        phase, heading = plan.gait.phase, plan.heading
+        for foot, group in enumerate(self._ankles):
+            added = torques[group] - before[foot]
+            kept = guards.guarded(added, foot, float(forefeet[foot]), phase, heading)
+            torques[group] = before[foot] + kept
 
     def _limit(self, joints: Floats, stance: int, load: float) -> None:
         pitch, roll = self._ankle_joints[stance]

@@ -6,14 +6,18 @@ balance at the hips, gravity compensation and velocity control by a virtual forc
 
 from typing import Literal
 
+import numpy as np
+
 from controller.robot_model import RobotModel
 from controller.walking.pose_targets import PoseTargets
+from controller.walking.stabilizer.config import SolverName
+from controller.walking.stabilizer.stabilizer import Stabilizer
 from controller.walking.step_planner import StepPlanner
 from controller.walking.swing_leg import LegLinks, SwingLeg
 from controller.walking.torque_config import TorqueWalkingConfig
 from controller.walking.torque_law import TorqueLaw
 from hil.description import RobotDescription
-from hil.interface import Estimate, JointCommand, Reference, WalkStatus
+from hil.interface import Estimate, Floats, JointCommand, Reference, WalkStatus
 from hil.validation import validate
 
 
@@ -21,7 +25,8 @@ class TorqueWalker:
     """Implements `hil.interface.Controller` for robots whose joints take torques.
 
     `speed` is the sagittal speed with which the body starts [m/s]; `ankle_limit` keeps the
-    stance foot flat. Raises DescriptionError for a walking section that does not fit.
+    stance foot flat, `stabilizer` keeps all its sides loaded, by the search `solver`. Raises
+    DescriptionError for a walking section that does not fit.
     """
 
     def __init__(
@@ -31,6 +36,8 @@ class TorqueWalker:
         pd: Literal["explicit", "implicit"] = "explicit",
         ankle_limit: bool = True,
         speed: float = 0.0,
+        stabilizer: bool = False,
+        solver: SolverName = "linear",
     ) -> None:
         config = validate(TorqueWalkingConfig, description.walking, description.file, "walking")
         dt = 1.0 / rate_hz
@@ -43,6 +50,9 @@ class TorqueWalker:
         )
         links = LegLinks(robot.thigh_length, robot.shank_length, robot.knee_offset)
         self._swing_leg = SwingLeg(config.swing_leg, links, dt)
+        self._stabilizer: Stabilizer | None = None
+        if stabilizer:
+            self._stabilizer = Stabilizer(config.stabilizer, solver, description, robot, rate_hz)
         self._command = JointCommand.zeros(len(description.joints))
         self.status = WalkStatus(walking=True)
 
@@ -56,7 +66,11 @@ class TorqueWalker:
         loads = estimate.foot_force.sum(axis=1) + estimate.toe_force
         self._plan.update(estimate, loads, reference)
         self._aim_swing_leg()
-        self._command.torque[:] = self._law.torques(self._plan, loads)
+        forefeet = estimate.foot_force[:, :2].sum(axis=1) + estimate.toe_force
+        torques = self._law.torques(self._plan, loads, forefeet)
+        if self._stabilizer is not None:
+            self._stabilize(self._stabilizer, torques, estimate)
+        self._command.torque[:] = torques
         self._report()
         return self._command
 
@@ -65,12 +79,24 @@ class TorqueWalker:
         robot, plan = self._robot, self._plan
         swing = plan.gait.swing
         drop = self._targets.update(plan.gait)
-        hip = robot.hip_positions[swing]
+        hip: list[float] = robot.hips[swing].tolist()
         plan.foot_target[2] = hip[2] - drop
         if plan.new_step:
             self._swing_leg.begin_step()
-        self._swing_leg.update(hip, plan.foot_target, plan.heading[:, 1], robot.root_rotation)
+        lateral = plan.heading[:, 1].tolist()
+        self._swing_leg.update(hip, plan.foot_target, lateral, robot.root_rotation)
         self._targets.set_swing_leg(swing, self._swing_leg)
+
+    def _stabilize(self, stabilizer: Stabilizer, torques: Floats, estimate: Estimate) -> None:
+        """Add torques that keep the stance foot's sides loaded, in place."""
+        gait = self._plan.gait
+        stance = gait.stance
+        measured = np.append(estimate.foot_force[stance], estimate.toe_force[stance])
+        touching = bool(estimate.contact[gait.swing])
+        stabilizer.add_torques(torques, stance, gait.foot_flat, measured, touching)
+        self._law.note_applied(torques)
+        self.status.stabilizer_iterations = stabilizer.solution.iterations
+        self.status.stabilizer_limited = stabilizer.solution.limited
 
     def _report(self) -> None:
         status, gait = self.status, self._plan.gait

@@ -6,7 +6,9 @@ Seed 000_bd1305a0ae731442, section 3 (velocity component after Coros 2010 and Ca
 import numpy as np
 
 from controller.robot_model import RobotModel
+from controller.walking.heading_frame import Pair
 from controller.walking.joint_groups import JointGroups
+from controller.walking.leg_kinematics import Vector
 from controller.walking.torque_config import VirtualForceConfig
 from hil.interface import Floats
 
@@ -26,10 +28,14 @@ class VirtualForce:
     def __init__(
         self, config: VirtualForceConfig, robot: RobotModel, groups: JointGroups, back: int
     ) -> None:
-        self._robot, self._groups, self._back = robot, groups, back
-        self._gain = robot.mass * np.array(config.gain)
+        self._back = back
+        self._centres: Floats = robot.data.xipos
+        self._anchors: Floats = robot.data.xanchor
+        self._gain = (robot.mass * config.gain[0], robot.mass * config.gain[1])
         self._limit = config.limit * robot.weight
         self._legs = np.array([groups.legs(kind) for kind in LEG_KINDS])
+        self._leg_anchors = groups.anchor_joint[self._legs]
+        self._back_anchor = int(groups.anchor_joint[back])
         mass = robot.model.body_mass
         shank, thigh = groups.child[self._legs[1]], groups.child[self._legs[2]]
         self._bodies = np.array([shank, thigh, np.full(2, robot.root_body)])
@@ -42,27 +48,26 @@ class VirtualForce:
         self._sums = self._weights.sum(axis=1)[:, None]
         self._torso_share = float(mass[self._torso]) / total
 
-    def force(self, wanted: Floats, velocity: Floats, heading: Floats) -> Floats:
-        """World force [N], shape (3,), of speeds in the heading frame [m/s], shape (2,)."""
-        force = self._gain * (wanted - velocity)
-        np.minimum(np.maximum(force, -self._limit), self._limit, out=force)
-        world: Floats = heading[:, :2] @ force
-        return world
+    def force(self, wanted: Pair, velocity: Pair, heading: Floats) -> Vector:
+        """World force [N] of speeds in the heading frame [m/s]."""
+        (gain_x, gain_y), limit = self._gain, self._limit
+        x = min(max(gain_x * (wanted[0] - velocity[0]), -limit), limit)
+        y = min(max(gain_y * (wanted[1] - velocity[1]), -limit), limit)
+        (xx, xy, _), (yx, yy, _), (zx, zy, _) = heading.tolist()
+        return xx * x + xy * y, yx * x + yy * y, zx * x + zy * y
 
     def lever_heights(self) -> Floats:
         """Heights r_z of the levers of ankle, knee and hip of both legs [m], shape (3, 2)."""
-        data = self._robot.data
-        joints = data.xanchor[self._groups.anchor_joint[self._legs], 2]
-        heights: Floats = self._weights @ data.xipos[self._bodies, 2] - self._sums * joints
+        heights: Floats = self._weights @ self._centres[:, 2].take(self._bodies)
+        heights -= self._sums * self._anchors[:, 2].take(self._leg_anchors)
         return heights
 
-    def add_torques(self, torques: Floats, force: Floats, shares: Floats) -> None:
+    def add_torques(self, torques: Floats, force: Vector, shares: Floats) -> None:
         """Add the torque vectors to `torques`, shape (groups, 3); `shares` of the legs sum to 1."""
         leg = self.lever_heights() * shares
-        fx, fy = float(force[0]), float(force[1])
+        fx, fy, _ = force
         torques[self._legs, 0] += fy * leg
         torques[self._legs, 1] -= fx * leg
-        data = self._robot.data
-        anchor = data.xanchor[self._groups.anchor_joint[self._back]]
-        rx, ry, rz = self._torso_share * (data.xipos[self._torso] - anchor)
+        lever = self._centres[self._torso] - self._anchors[self._back_anchor]
+        rx, ry, rz = (self._torso_share * lever).tolist()
         torques[self._back] += (-rz * fy, rz * fx, rx * fy - ry * fx)

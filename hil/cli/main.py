@@ -7,7 +7,7 @@ import typer
 from typer.core import TyperGroup
 
 from hil import __version__
-from hil.cli import bench, compare, emulate, export, plot, walk
+from hil.cli import bench, compare, emulate, export, plot, study, walk
 from hil.errors import StrideError
 
 INTERRUPTED = 130
@@ -42,6 +42,7 @@ app.command(epilog=compare.EPILOG)(compare.compare)
 app.command(epilog=plot.EPILOG)(plot.plot)
 app.command(epilog=export.EPILOG)(export.export)
 app.command()(bench.bench)
+app.add_typer(study.app)
 
 
 def _version(wanted: bool) -> None:

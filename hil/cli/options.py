@@ -5,7 +5,7 @@ from typing import Annotated
 
 from typer import Argument, Option
 
-from hil.request import BackendName, BusName, EstimatorName, PdName
+from hil.request import BackendName, BusName, EstimatorName, PdName, StabilizerSolverName
 
 Robot = Annotated[str, Argument(help="A robot that ships, or a YAML file.")]
 Backend = Annotated[
@@ -13,7 +13,7 @@ Backend = Annotated[
     Option(help="What stands behind the interface; the robot's own choice if not given."),
 ]
 Bus = Annotated[BusName | None, Option(help="With the bus backend: virtual servos, or real ones.")]
-Live = Annotated[bool, Option("--live", help="Real servos may move.")]
+Live = Annotated[bool, Option("--live", help="Walk the real robot: its servos move.")]
 Rate = Annotated[int | None, Option(help="Control rate in Hz.", show_default="robot's")]
 Duration = Annotated[float, Option(help="Walking time in s.")]
 Seed = Annotated[int, Option(help="Draws sensor noise, biases and latency jitter.")]
@@ -44,6 +44,14 @@ Push = Annotated[
 ]
 Estimator = Annotated[EstimatorName | None, Option(help="Sensors only, or the simulation's truth.")]
 Pd = Annotated[PdName | None, Option(help="Integration of a torque robot's PD.")]
+Stabilizer = Annotated[
+    bool | None,
+    Option("--stabilizer/--no-stabilizer", help="Ground contact stabilizer of a torque robot."),
+]
+StabilizerSolver = Annotated[
+    StabilizerSolverName | None,
+    Option(help="Search of the stabilizer.", show_default="linear"),
+]
 AnkleLimit = Annotated[
     bool | None,
     Option("--ankle-limit/--no-ankle-limit", help="Limit ankle torque by the measured load."),

@@ -1,10 +1,14 @@
 """Figures as tables on standard output."""
 
+import os
+import sys
 from collections.abc import Sequence
 from typing import Any
 
 from rich.console import Console
 from rich.table import Table
+
+PAGE_COLUMNS = 160
 
 MAIN_FIGURES = (
     ("fell", "fell", ""),
@@ -49,7 +53,7 @@ def print_rows(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]]) 
         table.add_column(head, justify="right" if head else "left")
     for row in rows:
         table.add_row(*row)
-    Console().print(table)
+    _console().print(table)
 
 
 def print_report(report: dict[str, Any]) -> None:
@@ -64,4 +68,10 @@ def print_report(report: dict[str, Any]) -> None:
     print_rows(title, ("", f"motion from {report['motion_source']}", ""), rows)
     for fault in report["faults"]:
         line = f"{fault['time_s']:.2f} s: {fault['source']}: {fault['name']} ({fault['reaction']})"
-        Console().print(line, style="bold red", highlight=False)
+        _console().print(line, style="bold red", highlight=False)
+
+
+def _console() -> Console:
+    """A console that does not cut tables to 80 columns where nobody said how wide the page is."""
+    unknown = not sys.stdout.isatty() and "COLUMNS" not in os.environ
+    return Console(width=PAGE_COLUMNS if unknown else None)

@@ -14,7 +14,6 @@ from drivers.boards.frames import (
     encode_imu_frame,
 )
 from hil.description import Board, RobotDescription
-from hil.interface import Floats
 from sim_backends.latency import BITS_PER_BYTE
 from sim_backends.plant import Plant
 from sim_backends.sensor_models import CellErrors, ImuErrors
@@ -29,6 +28,7 @@ CLOCK_ERROR = 50e-6
 """Largest error of a board's crystal (assumed)."""
 _ALL_CELLS = 0xF
 _INT16 = 32767
+_GYRO_UNIT = float(GYRO_UNIT)  # A numpy scalar would make slow arithmetic.
 
 FrameMaker = Callable[[int, int], bytes]
 """Samples the plant: from sequence number and device time [µs] to a frame."""
@@ -66,13 +66,14 @@ class SensorBoard:
         )
         self._last_arrival_ns = 0
         self._index = plant.substep_index + int(random.integers(self._stride))
-        clock.schedule(plant.grid_time_ns(self._index), self._sample)
+        self._sample_ns = plant.grid_time_ns(self._index)
+        clock.schedule(self._sample_ns, self._sample)
 
     def host_wrote(self, data: bytes, baud: int) -> None:
         """Boards only talk."""
 
     def _sample(self) -> None:
-        now_ns = self._plant.grid_time_ns(self._index)
+        now_ns = self._sample_ns
         device_us = int(now_ns * self._microseconds) + self._offset_us
         frame = self._make_frame(self._sequence, device_us)
         self._sequence += 1
@@ -82,7 +83,8 @@ class SensorBoard:
         self._last_arrival_ns = arrival_ns
         self._port.deliver_at(arrival_ns, frame)
         self._index += self._stride
-        self._clock.schedule(self._plant.grid_time_ns(self._index), self._sample)
+        self._sample_ns = self._plant.grid_time_ns(self._index)
+        self._clock.schedule(self._sample_ns, self._sample)
 
 
 class LoadCells:
@@ -96,16 +98,18 @@ class LoadCells:
     ) -> None:
         """`foot`: 0 left, 1 right."""
         self._plant = plant
-        self._foot = foot
+        self._corners = slice(4 * foot, 4 * foot + 4)
         self._errors = errors
         gain = CELL_GAIN * random.uniform(0.7, 1.3, 4) * random.choice((-1.0, 1.0), 4)
         self._gain = gain
         self._zero = np.rint(random.normal(0.0, CELL_ZERO, 4))
+        self._cells: list[tuple[float, float]] = np.transpose((self._zero, gain)).tolist()
 
     def frame(self, sequence: int, device_us: int) -> bytes:
         """A frame of the loads now."""
-        force = self._errors.measure(self._plant.foot_force()[self._foot])
-        counts = np.rint(self._zero + self._gain * force).astype(int).tolist()
+        forces = self._errors.measure(self._plant.corner_forces()[self._corners])
+        cells = zip(self._cells, forces, strict=True)
+        counts = [round(zero + gain * force) for (zero, gain), force in cells]
         return encode_foot_frame(sequence, device_us, _ALL_CELLS, counts)
 
     def calibration(self) -> dict[str, list[float]]:
@@ -132,11 +136,11 @@ class InertialUnit:
             device_us,
             ImuStatus.ALL,
             _raw(orientation, ORIENTATION_UNIT),
-            _raw(gyro, GYRO_UNIT),
+            _raw(gyro, _GYRO_UNIT),
             _raw(force, ACCELERATION_UNIT),
         )
 
 
-def _raw(values: Floats, unit: float) -> list[int]:
+def _raw(values: list[float], unit: float) -> list[int]:
     """Register counts, saturated to 16 bits."""
-    return [max(-_INT16, min(_INT16, math.floor(v / unit + 0.5))) for v in values.tolist()]
+    return [max(-_INT16, min(_INT16, math.floor(v / unit + 0.5))) for v in values]

@@ -1,6 +1,7 @@
 """One emulated servo bus: half-duplex wire, who answers when, and the watchdog's silence."""
 
 from collections.abc import Sequence
+from functools import partial
 
 from drivers.dynamixel.control_table import BAUD_CODES
 from drivers.dynamixel.protocol import Instruction, PacketReader
@@ -49,11 +50,11 @@ class ServoBus:
     def host_wrote(self, data: bytes, baud: int) -> None:
         """Bytes leave the host now: through the adapter, along the wire, to the servos."""
         goals = len(data) > _INSTRUCTION_BYTE and data[_INSTRUCTION_BYTE] in _GOAL_WRITES
-        leave_ns = self._host.departure_ns(self._clock.now_ns(), goals)
+        leave_ns = self._host.departure_ns(goals)
         begin_ns = max(leave_ns + self._adapter.transfer_ns(), self._host_until_ns)
         end_ns = begin_ns + len(data) * BITS_PER_BYTE * 1_000_000_000 // baud
         self._host_until_ns = end_ns
-        self._clock.schedule(end_ns, lambda: self._arrive(data, baud, begin_ns))
+        self._clock.schedule(end_ns, partial(self._arrive, data, baud, begin_ns))
 
     def _arrive(self, data: bytes, baud: int, begin_ns: int) -> None:
         if begin_ns < self._servos_until_ns:

@@ -43,21 +43,21 @@ class VirtualClock:
 
     def sleep_until_ns(self, time_ns: int) -> None:
         """Advance to an absolute time; return at once if it is past."""
-        while self._advance_once(time_ns):
+        while self.advance_once(time_ns):
             pass
 
     def wait_readable(self, ports: Sequence[Readable], deadline_ns: int) -> None:
         """Advance until one of the ports has bytes, or to the deadline."""
-        if any(port.in_waiting for port in ports):
+        if _readable(ports):
             return
         seen = self.deliveries
-        while self._advance_once(deadline_ns):
+        while self.advance_once(deadline_ns):
             if self.deliveries != seen:
                 seen = self.deliveries
-                if any(port.in_waiting for port in ports):
+                if _readable(ports):
                     return
 
-    def _advance_once(self, limit_ns: int) -> bool:
+    def advance_once(self, limit_ns: int) -> bool:
         """One event or substep up to a time; False when there is none and the time is reached."""
         events = self._events
         if events and events[0][0] < self._grid_ns:
@@ -75,3 +75,7 @@ class VirtualClock:
         if limit_ns > self._now_ns:
             self._now_ns = limit_ns
         return False
+
+
+def _readable(ports: Sequence[Readable]) -> bool:
+    return any(port.in_waiting for port in ports)

@@ -1,6 +1,7 @@
 """The control socket beside the serial lines: JSON lines that a real robot does not have."""
 
 import json
+import select
 import socket
 from collections.abc import Callable
 from pathlib import Path
@@ -23,18 +24,25 @@ class ControlServer:
         self._listener.bind(str(path))
         self._listener.listen()
         self._clients: dict[socket.socket, bytes] = {}
+        self._poll = select.epoll()
+        self._poll.register(self._listener, select.EPOLLIN)
 
-    def sockets(self) -> list[socket.socket]:
-        """What to wait for."""
-        return [self._listener, *self._clients]
+    def fileno(self) -> int:
+        """For select: readable when there is something to serve."""
+        return self._poll.fileno()
 
-    def serve(self, ready: socket.socket) -> None:
-        """Accept a client, or answer what one sent."""
-        if ready is self._listener:
+    def serve(self, _: int) -> None:
+        """Accept clients, and answer what they sent."""
+        ready = {number for number, _ in self._poll.poll(0)}
+        for client in [client for client in self._clients if client.fileno() in ready]:
+            self._serve_client(client)
+        if self._listener.fileno() in ready:
             client, _ = self._listener.accept()
             client.settimeout(1.0)
             self._clients[client] = b""
-            return
+            self._poll.register(client, select.EPOLLIN)
+
+    def _serve_client(self, ready: socket.socket) -> None:
         try:
             data = ready.recv(65536)
             *lines, rest = (self._clients[ready] + data).split(b"\n")
@@ -44,6 +52,7 @@ class ControlServer:
         except OSError:
             data = b""
         if not data:
+            self._poll.unregister(ready)
             del self._clients[ready]
             ready.close()
 
@@ -58,7 +67,8 @@ class ControlServer:
 
     def close(self) -> None:
         """Close all sockets."""
-        for client in self.sockets():
+        self._poll.close()
+        for client in (self._listener, *self._clients):
             client.close()
 
 

@@ -121,17 +121,17 @@ class Dispatcher:
         ]
 
     def _read_fast(self, items: Items) -> list[Reply]:
-        if sum(item[2] for item in items) > TABLE_SIZE:
-            return []
-        out, crc, gap_ns = b"", 0, 0
-        for servo, address, length in self._readers(items):
-            if not out:
-                out = fast_status_start([item[2] for item in items])
-                crc, gap_ns = crc16(out), _gap_ns(servo)
+        out, crc = _fast_head(items)
+        parts, gap_ns = [out], -1
+        for servo, address, length in self._readers(items if out else ()):
+            if gap_ns < 0:
+                gap_ns = _gap_ns(servo)
             error, data = servo.read(address, length)
-            block, crc = fast_status_block(crc, error, servo.id, data.ljust(length, b"\0"))
-            out += block
-        return [Reply(gap_ns, out)] if out else []
+            if len(data) < length:
+                data = data.ljust(length, b"\0")
+            block, crc = fast_status_block(crc, error, servo.id, data)
+            parts.append(block)
+        return [Reply(gap_ns, b"".join(parts))] if gap_ns >= 0 else []
 
     def _write_sync(self, params: bytes) -> list[Reply]:
         if len(params) < _WORDS.size:
@@ -169,6 +169,15 @@ def _bulk_items(params: bytes) -> Items:
     """Servos of a bulk read: a block of its own for each."""
     whole = len(params) - len(params) % _ITEM.size
     return tuple(_ITEM.iter_unpack(params[:whole]))
+
+
+@lru_cache(maxsize=64)
+def _fast_head(items: Items) -> tuple[bytes, int]:
+    """Start of a fast answer and its CRC; empty when the answer would not fit a packet."""
+    if sum(item[2] for item in items) > TABLE_SIZE:
+        return b"", 0
+    head = fast_status_start([item[2] for item in items])
+    return head, crc16(head)
 
 
 def _gap_ns(servo: EmulatedServo) -> int:

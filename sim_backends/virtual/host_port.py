@@ -1,6 +1,7 @@
 """The host's end of a virtual serial line: what was received, and who is on the other side."""
 
 from collections.abc import Callable
+from functools import partial
 from typing import Protocol
 
 from sim_backends.virtual.clock import VirtualClock
@@ -33,7 +34,7 @@ class HostPort:
 
     def deliver_at(self, time_ns: int, data: bytes) -> None:
         """Have bytes arrive in the host at a time."""
-        self._clock.schedule(time_ns, lambda: self.on_bytes(data))
+        self._clock.schedule(time_ns, partial(self.on_bytes, data))
 
     def _keep(self, data: bytes) -> None:
         self.received += data

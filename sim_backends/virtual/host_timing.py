@@ -1,6 +1,6 @@
 """The modelled compute time of the host: when goals leave that were computed from an answer."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from sim_backends.virtual.host_port import HostPort
 
@@ -13,13 +13,18 @@ class HostTiming:
     is a real one whose own time counts.
     """
 
-    def __init__(self, compute_ns: int, bus_ports: Sequence[HostPort]) -> None:
+    def __init__(
+        self, compute_ns: int, bus_ports: Sequence[HostPort], now_ns: Callable[[], int]
+    ) -> None:
+        """`now_ns`: the host's time; a virtual robot may be a little ahead of a real host."""
         self._compute_ns = compute_ns
         self._ports = tuple(bus_ports)
+        self._now_ns = now_ns
 
-    def departure_ns(self, now_ns: int, goals: bool) -> int:
+    def departure_ns(self, goals: bool) -> int:
         """When a packet that the host writes now leaves it [ns]."""
+        now_ns = self._now_ns()
         if not goals or not self._compute_ns:
             return now_ns
-        last_ns = max(port.last_read_ns for port in self._ports)
+        last_ns = max([port.last_read_ns for port in self._ports])
         return max(now_ns, last_ns + self._compute_ns)

@@ -9,13 +9,9 @@ from drivers.dynamixel.control_table import VELOCITY_UNIT, VOLTAGE_UNIT
 from drivers.dynamixel.servo_models import ServoModel, find_servo_model
 from hil.description import RobotDescription
 from hil.errors import InputError
-from hil.interface import Floats
 from hil.servo import PWM_FULL, MotorParameters
 from sim_backends.plant import Plant
 from sim_backends.servo_physics import ServoPhysics
-
-TEMPERATURE_SUBSTEPS = 100
-"""Substeps between two looks at temperatures, which change in seconds."""
 
 
 def servo_models(description: RobotDescription) -> list[ServoModel]:
@@ -57,42 +53,33 @@ class MotorBank:
         self._plant = plant
         # A model without current measurement shows load in 0.1 % of stall instead.
         stall = physics.motors.stall_torque(physics.supply.voltage) / physics.motors.torque_constant
-        self._current_unit: Floats = np.array(
-            [
-                amps / 1000 if model.current_unit is None else model.current_unit
-                for model, amps in zip(models, stall, strict=True)
-            ]
-        )
-        self._index = self._temperature_index = -TEMPERATURE_SUBSTEPS
+        self._current_unit = [
+            float(amps) / 1000 if model.current_unit is None else model.current_unit
+            for model, amps in zip(models, stall, strict=True)
+        ]
+        self._index = -1
         self._readings: list[Reading] = []
-        self._temperatures: list[int] = []
 
     def readings(self) -> list[Reading]:
         """Readings of all motors at the last grid point."""
         index = self._plant.substep_index
         if index != self._index:
             self._index = index
-            self._readings = self._read(index)
+            self._readings = self._read()
         return self._readings
 
-    def _read(self, index: int) -> list[Reading]:
+    def _read(self) -> list[Reading]:
         physics = self.physics
-        if index - self._temperature_index >= TEMPERATURE_SUBSTEPS:
-            self._temperature_index = index
-            self._temperatures = np.rint(physics.temperature()).astype(int).tolist()
-        table = np.rint(
-            (
-                physics.duty * PWM_FULL,
-                physics.current / self._current_unit,
-                physics.velocity / VELOCITY_UNIT,
-                physics.counts,
-            )
-        ).astype(int)
         voltage = round(physics.voltage / VOLTAGE_UNIT)
         return [
-            Reading._make((*row, voltage, temperature))
-            for row, temperature in zip(table.T.tolist(), self._temperatures, strict=True)
-        ]
+            Reading(
+                round(duty * PWM_FULL), round(current / unit), round(speed / VELOCITY_UNIT),
+                int(counts), voltage, degrees,
+            )
+            for counts, speed, duty, current, unit, degrees in zip(
+                *physics.measured, self._current_unit, physics.degrees(), strict=True
+            )
+        ]  # fmt: skip
 
 
 class Motor:

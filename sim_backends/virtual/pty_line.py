@@ -7,7 +7,7 @@ import select
 import struct
 import tty
 
-from sim_backends.virtual.host_port import Device, HostPort
+from sim_backends.virtual.host_port import Device
 
 _TCGETS2 = 0x802C542A
 _TERMIOS2 = struct.Struct("4IB19B2I")
@@ -18,12 +18,13 @@ class PtyLine:
     """One line: what a client writes goes to the device, what the device sends to the client.
 
     As on a real port, what is sent while no client holds the port, or faster than it reads, is
-    lost; and the client's baud counts. Without a client the terminal is hung up, and `fileno`
-    must not be waited for.
+    lost; and the client's baud counts. Without a client the terminal is hung up, which `fileno`
+    reports for as long as it lasts: wait for edges.
     """
 
-    def __init__(self, port: HostPort, device: Device) -> None:
+    def __init__(self, device: Device) -> None:
         self._device = device
+        self._has_client = False
         self._master, slave = pty.openpty()
         tty.setraw(slave)
         self.path = os.ttyname(slave)
@@ -32,32 +33,43 @@ class PtyLine:
         os.set_blocking(self._master, False)
         self._poll = select.poll()
         self._poll.register(self._master, 0)
-        port.on_bytes = self._send
 
     def fileno(self) -> int:
-        """For select."""
+        """For epoll."""
         return self._master
 
-    def has_client(self) -> bool:
-        """Whether somebody holds the port open."""
-        return not any(event & select.POLLHUP for _, event in self._poll.poll(0))
+    def serve(self, events: int) -> None:
+        """React to what epoll reports: the client wrote, or hung up."""
+        if events & select.EPOLLHUP:
+            self._has_client = False
+        if events & select.EPOLLIN:
+            self._receive()
 
-    def _send(self, data: bytes) -> None:
-        if not self.has_client():
+    def _look_for_client(self) -> bool:
+        """Whether somebody holds the port open: coming is not reported, only going is."""
+        self._has_client = not any(event & select.POLLHUP for _, event in self._poll.poll(0))
+        return self._has_client
+
+    def send(self, data: bytes) -> None:
+        """Hand bytes to the client, if there is one."""
+        if not (self._has_client or self._look_for_client()):
             return
         try:
             os.write(self._master, data)
         except BlockingIOError:
             return  # The client does not read: its driver's buffer is full, bytes are lost.
 
-    def receive(self) -> None:
-        """Hand what the client wrote to the device."""
-        try:
-            data = os.read(self._master, _READ_SIZE)
-        except OSError:
-            return  # The client went away between select and read.
-        if data:
-            self._device.host_wrote(data, self._baud())
+    def _receive(self) -> None:
+        """Hand all that the client wrote to the device."""
+        more = True
+        while more:
+            try:
+                data = os.read(self._master, _READ_SIZE)
+            except OSError:
+                return  # Nothing more, or the client went away.
+            if data:
+                self._device.host_wrote(data, self._baud())
+            more = len(data) == _READ_SIZE
 
     def _baud(self) -> int:
         """Speed that the client set [bit/s], any number, as the real driver would use it."""

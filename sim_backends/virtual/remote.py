@@ -7,6 +7,7 @@ import socket
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -92,6 +93,8 @@ class RemoteWorld:
         self._socket = socket.socket(socket.AF_UNIX)
         self._socket.settimeout(ANSWER_TIMEOUT_S)
         self._push: tuple[float, ...] = (0.0, 0.0, 0.0)
+        self._figures: dict[str, float | None] = {}
+        self._closed = False
         try:
             self._socket.connect(str(control))
             self._answers = self._socket.makefile("rb")
@@ -131,8 +134,19 @@ class RemoteWorld:
         """Hold the root body where it is, or let it go."""
         self._ask({"do": "support", "supported": supported})
 
+    def figures(self) -> dict[str, float | None]:
+        """As `Plant.figures`; once closed, as they were then."""
+        if not self._closed:
+            self._figures = self._ask({"do": "figures"})["figures"]
+        return self._figures
+
     def close(self) -> None:
-        """Disconnect; safe to call twice."""
+        """Disconnect; safe to call twice, and when the virtual robot is gone."""
+        if self._closed:
+            return
+        with suppress(BackendError):
+            self.figures()
+        self._closed = True
         self._answers.close()
         self._socket.close()
         self._truth.close()

@@ -1,5 +1,6 @@
 """A whole virtual robot: its servos and boards on serial lines, moved by a plant."""
 
+from collections.abc import Callable
 from itertools import count
 from typing import Any
 
@@ -36,9 +37,10 @@ class VirtualRobot:
         plant: Plant,
         seed: int,
         rate_hz: int,
-        host_computes: bool = True,
+        host_now_ns: Callable[[], int] | None = None,
     ) -> None:
-        """`host_computes`: model the host's compute time; not for a host that runs in real time.
+        """`host_now_ns`: time of a host that runs in real time, on the axis of the virtual clock;
+        without it the host lives on the virtual clock, and its compute time is modelled.
 
         Raises InputError for a robot without servos, or a plant made for another rate.
         """
@@ -57,18 +59,23 @@ class VirtualRobot:
         wires, sensors = (np.random.default_rng((seed, stream)) for stream in (2, 3))
         self.servos = _make_servos(description, plant, self.clock)
         """By joint name."""
-        buses = self._make_buses(wires, 1000 * description.timing.compute_us * host_computes)
+        ports = [self.ports[name] for name in description.buses]
+        if host_now_ns is None:
+            compute_ns = 1000 * description.timing.compute_us
+            host = HostTiming(compute_ns, ports, self.clock.now_ns)
+        else:
+            host = HostTiming(0, ports, host_now_ns)
+        buses = self._make_buses(wires, host)
         self._cells = {
-            side: LoadCells(plant, index, CellErrors(description.noise, sensors, (4,)), sensors)
+            side: LoadCells(plant, index, CellErrors(description.noise, sensors, 4), sensors)
             for index, side in enumerate(("left", "right"))
         }
         self._imu = InertialUnit(plant, ImuErrors(description.noise, sensors))
         self.devices: dict[str, Device] = {**buses, **self._make_boards(sensors)}
         """What hangs on each line."""
 
-    def _make_buses(self, random: np.random.Generator, compute_ns: int) -> dict[str, ServoBus]:
+    def _make_buses(self, random: np.random.Generator, host: HostTiming) -> dict[str, ServoBus]:
         description = self.description
-        host = HostTiming(compute_ns, [self.ports[name] for name in description.buses])
         buses = {}
         for name, bus in description.buses.items():
             joints = [joint.name for joint in description.joints if joint.bus == name]

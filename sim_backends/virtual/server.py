@@ -15,7 +15,9 @@ import stat
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
+from collections import deque
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -29,29 +31,36 @@ from sim_backends.virtual.pty_line import PtyLine
 from sim_backends.virtual.robot import VirtualRobot
 from sim_backends.virtual.truth_block import TruthBlock
 
+_WORK_NS = 300_000
+"""Longest work between two looks at what clients sent [ns]."""
+
 
 class VirtualRobotServer:
     """Paces a virtual robot by the monotonic clock and moves bytes to and from its terminals.
 
-    Virtual time 0 is the moment of construction. Answers leave when their modelled time has come,
-    never before; how much later is up to the machine.
+    Virtual time 0 is the moment of construction. What a client writes reaches the wire one USB
+    transfer later at the earliest, so virtual time runs that far ahead of real time: physics,
+    boards and answers are computed before they are due, piece by piece. Bytes for clients then
+    wait in an outbox and leave when their modelled time has come, never before; how much later
+    is up to the machine.
     """
 
     def __init__(self, description: RobotDescription, rate_hz: int, seed: int) -> None:
+        self._start_ns = time.monotonic_ns()
         plant = Plant(description, rate_hz, seed, nominal_motors(description))
-        self._robot = VirtualRobot(description, plant, seed, rate_hz, host_computes=False)
+        self._robot = VirtualRobot(description, plant, seed, rate_hz, host_now_ns=self._now_ns)
         self._plant = plant
         self._folder = Path(tempfile.mkdtemp(prefix="stridebridge-"))
         self._truth = TruthBlock(self._folder / "truth", len(description.joints), create=True)
         handlers = {"hello": self._hello, "push": self._push, "support": self._support,
-                    "quit": self._quit}  # fmt: skip
+                    "figures": self._figures, "quit": self._quit}  # fmt: skip
         self._control = ControlServer(self._folder / "control", handlers)
-        robot = self._robot
-        self._lines = {
-            name: PtyLine(robot.ports[name], robot.devices[name]) for name in robot.ports
-        }
+        self._lines = {name: PtyLine(device) for name, device in self._robot.devices.items()}
+        self._outbox: deque[tuple[int, PtyLine, bytes]] = deque()
+        for name, line in self._lines.items():
+            self._robot.ports[name].on_bytes = partial(self._post, line)
+        self._ahead_ns = 1000 * description.timing.usb_transfer_us
         self._running = True
-        self._start_ns = time.monotonic_ns()
         self._publish()
 
     def ports(self) -> dict[str, Any]:
@@ -65,37 +74,64 @@ class VirtualRobotServer:
 
     def serve(self, watch_stdin: bool) -> None:
         """Run until told to stop. Raises BackendError when the simulation diverges."""
-        while self._running:
-            self._advance()
-            lines = [line for line in self._lines.values() if line.has_client()]
-            waiting: list[Any] = [*lines, *self._control.sockets()]
+        self._start_ns = time.monotonic_ns() - self._robot.clock.now_ns()
+        sources: dict[int, Callable[[int], None]] = {}
+        with select.epoll() as poll:
+            for line in self._lines.values():
+                # A terminal without client is hung up all the time: only edges matter.
+                poll.register(line, select.EPOLLIN | select.EPOLLET)
+                sources[line.fileno()] = line.serve
+            poll.register(self._control, select.EPOLLIN)
+            sources[self._control.fileno()] = self._control.serve
             if watch_stdin:
-                waiting.append(sys.stdin)
-            clock = self._robot.clock
-            timeout = max(0, clock.next_ns() - self._now_ns()) * 1e-9
-            ready, _, _ = select.select(waiting, [], [], timeout)
-            if ready:
-                self._advance()
-            for source in ready:
-                self._take(source)
+                poll.register(sys.stdin, select.EPOLLIN)
+                sources[sys.stdin.fileno()] = self._look_at_stdin
+            while self._running:
+                self._work()
+                # epoll's own timeout has a grain of 1 ms.
+                if select.select([poll], [], [], self._idle_s())[0]:
+                    self._send_due()
+                    for number, events in poll.poll(0):
+                        sources[number](events)
 
-    def _take(self, source: Any) -> None:
-        if isinstance(source, PtyLine):
-            source.receive()
-        elif source is not sys.stdin:
-            self._control.serve(source)
-        elif not os.read(sys.stdin.fileno(), 4096):
+    def _look_at_stdin(self, _: int) -> None:
+        if not os.read(sys.stdin.fileno(), 4096):
             self._running = False
 
     def _now_ns(self) -> int:
         return time.monotonic_ns() - self._start_ns
 
-    def _advance(self) -> None:
-        """Let virtual time catch up with real time."""
+    def _post(self, line: PtyLine, data: bytes) -> None:
+        self._outbox.append((self._robot.clock.now_ns(), line, data))
+
+    def _send_due(self) -> int:
+        """Send what is due; the present time."""
+        now_ns = self._now_ns()
+        outbox = self._outbox
+        while outbox and outbox[0][0] <= now_ns:
+            _, line, data = outbox.popleft()
+            line.send(data)
+        return now_ns
+
+    def _work(self) -> None:
+        """Let virtual time run ahead for a while, and send what becomes due meanwhile.
+
+        A request must not wait until a server that was held up has caught up with real time.
+        """
         before = self._plant.substep_index
-        self._robot.clock.sleep_until_ns(self._now_ns())
+        began_ns = self._send_due()
+        while self._robot.clock.advance_once(began_ns + self._ahead_ns):
+            if self._send_due() > began_ns + _WORK_NS:
+                break
         if self._plant.substep_index != before:
             self._publish()
+
+    def _idle_s(self) -> float:
+        """Until something is due or can be computed [s]."""
+        next_ns = self._robot.clock.next_ns() - self._ahead_ns
+        if self._outbox:
+            next_ns = min(next_ns, self._outbox[0][0])
+        return max(0, next_ns - self._now_ns()) * 1e-9
 
     def _publish(self) -> None:
         self._truth.write(self._plant.truth(), self._start_ns)
@@ -118,6 +154,9 @@ class VirtualRobotServer:
     def _support(self, request: Request) -> dict[str, Any]:
         self._plant.set_support(bool(request["supported"]))
         return {}
+
+    def _figures(self, _: Request) -> dict[str, Any]:
+        return {"figures": self._plant.figures()}
 
     def _quit(self, _: Request) -> dict[str, Any]:
         self._running = False

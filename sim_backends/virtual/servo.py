@@ -30,7 +30,7 @@ _ERROR = Register.HARDWARE_ERROR_STATUS.address
 _WATCHDOG = Register.BUS_WATCHDOG.address
 _GOAL_ADDRESS = Register.GOAL_POSITION.address
 _GOAL_POSITION = struct.Struct("<i")
-_PRESENT = Register.REALTIME_TICK.address
+_PRESENT, _PRESENT_END = Register.REALTIME_TICK.address, Register.PRESENT_TEMPERATURE.end
 _GOALS, _GOALS_END = Register.GOAL_PWM.address, Register.GOAL_POSITION.end
 
 
@@ -101,15 +101,21 @@ class EmulatedServo:
 
     def read(self, address: int, length: int) -> tuple[int, bytes]:
         """Error byte and data of a read."""
+        end = address + length
+        if _PRESENT <= address < end <= _PRESENT_END:  # What a driver reads in every tick.
+            self._measure()
+            return ALERT if self._memory[_ERROR] else 0, bytes(self._memory[address:end])
         if self.registers.reaches_present(address, length):
             self._measure()
-        data = self.registers.read(address, length)
-        if data is None:
+        found = self.registers.read(address, length)
+        if found is None:
             return self.error(StatusError.ACCESS), b""
-        return self.error(), data
+        return self.error(), found
 
     def write(self, address: int, data: bytes) -> int:
         """Write bytes; the error byte of the answer. A register in error keeps all of them out."""
+        if address == _GOAL_ADDRESS and len(data) == _GOAL_POSITION.size and self._take_goal(data):
+            return self.error()
         runs = self.registers.split_indirect(address, data)
         if runs is None:
             return self.error(self._write_run(address, data))
@@ -151,6 +157,16 @@ class EmulatedServo:
         return self.error(StatusError.NONE if params == _CLEAR_POSITION else StatusError.DATA_RANGE)
 
     # Writing ---------------------------------------------------------------------------------
+
+    def _take_goal(self, data: bytes) -> bool:
+        """A Goal Position alone, as a driver writes it in every tick; False if it is refused."""
+        (goal,) = _GOAL_POSITION.unpack(data)
+        low, high = self.registers.goal_bounds
+        if not low <= goal <= high or self._memory[_WATCHDOG] == WATCHDOG_TRIPPED:
+            return False
+        self._memory[_GOAL_ADDRESS : _GOAL_ADDRESS + _GOAL_POSITION.size] = data
+        self._new_goal()
+        return True
 
     def _write_run(self, address: int, data: bytes) -> StatusError:
         """Check and write bytes at their real addresses, then do what they ask for."""
@@ -260,19 +276,19 @@ class EmulatedServo:
 
     def _measure(self) -> None:
         """Bring the measured registers, and the hardware error, to the last grid point."""
-        reading = self._motor.reading()
-        memory, sign = self._memory, self._sign
+        pwm, current, velocity, position, voltage, temperature = self._motor.reading()
+        sign = self._sign
+        velocity *= sign
         tick = (self._now_ns() - self._booted_ns) // 1_000_000 % REALTIME_TICK_MODULUS
-        velocity = sign * reading.velocity
         moving = abs(velocity) > self._threshold
-        PRESENT.pack_into(
-            memory, _PRESENT, tick, moving, 0, sign * reading.pwm, sign * reading.current,
-            velocity, self._shown(reading), 0, self._goal, reading.voltage, reading.temperature,
-        )  # fmt: skip
-        if reading.temperature > self._hottest:
+        if temperature > self._hottest:
             self._raise(HardwareError.OVERHEATING)
-        if not self._lowest <= reading.voltage <= self._highest:
+        if not self._lowest <= voltage <= self._highest:
             self._raise(HardwareError.INPUT_VOLTAGE)
+        PRESENT.pack_into(
+            self._memory, _PRESENT, tick, moving, 0, sign * pwm, sign * current, velocity,
+            sign * (position - CENTRE_COUNTS) + self._offset, 0, self._goal, voltage, temperature,
+        )  # fmt: skip
 
     def _raise(self, error: HardwareError) -> None:
         """Latch a hardware error; one that the Shutdown mask holds ends the torque."""

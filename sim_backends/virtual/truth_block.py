@@ -63,8 +63,7 @@ class TruthBlock:
         slot = count % 2
         self._head[1 + slot] = truth.time_ns + offset_ns
         values = self._values[slot]
-        for name, part in self._slices:
-            values[part] = getattr(truth, name).ravel()
+        np.concatenate([getattr(truth, name).ravel() for name, _ in _FIELDS], out=values)
         self._head[0] = count
 
     def read(self) -> Truth:

@@ -61,14 +61,6 @@ def test_velocity_of_the_centre_of_mass_is_its_derivative(placed):
     assert (data.subtree_com[root] - before) / step == pytest.approx(velocity, abs=1e-4)
 
 
-def test_gravity_torques_are_mujocos_at_rest(placed):
-    description, robot, data = placed
-    data.qvel[:] = 0.0
-    mujoco.mj_forward(robot.model, data)
-    dofs = [robot.model.joint(name).dofadr[0] for name in description.joint_names]
-    assert robot.gravity_torques() == pytest.approx(data.qfrc_bias[dofs], abs=1e-9)
-
-
 def test_corners_are_those_of_the_sole_boxes(placed):
     description, robot, data = placed
     corners = robot.corner_positions

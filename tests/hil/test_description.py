@@ -74,6 +74,30 @@ def test_override_by_full_and_by_short_key():
     assert load_robot("minibiped", ("floor_friction=0.4",)).plant.floor_friction == 0.4
 
 
+@pytest.mark.parametrize("key", ["walking.swing.height", "swing.height", "walking.gait.period"])
+def test_override_of_a_nested_key(key):
+    changed = load_robot("minibiped", (f"{key}=0.031",)).walking
+    section, name = key.split(".")[-2:]
+    assert changed[section][name] == 0.031
+    same = load_robot("minibiped").walking
+    changed[section][name] = same[section][name]
+    assert changed == same
+
+
+def test_an_end_of_a_key_that_two_sections_share_is_refused_and_the_whole_ones_listed():
+    with pytest.raises(UnknownNameError, match=r"walking\.placement\.gain_x") as caught:
+        load_robot("minibiped", ("gain_x=1.0",))
+    assert "walking.balance.gain_x" in str(caught.value)
+
+
+def test_a_whole_section_and_a_key_that_is_a_number_can_be_set():
+    alteration = load_robot("minibiped", ("walking.alteration={gain: 0.5}",)).walking["alteration"]
+    assert alteration == {"gain": 0.5}
+    gains = load_robot("human", ("walking.gains.300.knee=[1.0, 2.0]",)).walking["gains"]
+    assert gains[300]["knee"] == [1.0, 2.0]
+    assert gains.keys() == load_robot("human").walking["gains"].keys()
+
+
 def test_override_with_unknown_key_lists_the_known_ones():
     with pytest.raises(UnknownNameError, match=r"supply\.voltage"):
         load_robot("minibiped", ("volts=3",))

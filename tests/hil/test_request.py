@@ -19,6 +19,11 @@ def test_what_is_said_stays():
     assert resolved.ankle_limit is False
 
 
+def test_live_alone_is_the_real_bus_and_has_deadlines():
+    request = RunRequest.checked(live=True).resolved(load_robot("minibiped"))
+    assert (request.backend, request.bus, request.lockstep) == ("bus", "real", False)
+
+
 @pytest.mark.parametrize(
     ("values", "says"),
     [
@@ -30,8 +35,8 @@ def test_what_is_said_stays():
         ({"seed": -1}, "--seed"),
         ({"backend": "gazebo"}, "--backend"),
         ({"bus": "real"}, "--live"),
-        ({"live": True}, "--bus real"),
-        ({"live": True, "bus": "virtual"}, "--bus real"),
+        ({"live": True, "bus": "virtual"}, "--live .* --bus virtual"),
+        ({"live": True, "backend": "mujoco"}, "--live .* --backend mujoco"),
         ({"backend": "mujoco", "bus": "virtual"}, "--bus"),
         ({"bus": "real", "live": True, "estimator": "truth"}, "--estimator"),
         ({"priority": 50}, "--priority"),

@@ -1,4 +1,6 @@
 import json
+from contextlib import nullcontext
+from dataclasses import replace
 
 import pytest
 from hil_fakes import make_session
@@ -44,6 +46,45 @@ def test_a_backend_that_does_not_open_leaves_no_folder_and_nothing_open(tmp_path
         run(session, progress=False)
     assert not (tmp_path / "run").exists()
     assert session.backend.journal == ["open", "close"]
+
+
+def closing(session):
+    """The session with two closers that write into its backend's journal."""
+    journal = session.backend.journal
+    closers = (lambda: journal.append("world closed"), lambda: journal.append("server ended"))
+    return replace(session, closers=closers)
+
+
+@pytest.mark.parametrize("stage", ["open", "write", None])
+def test_what_was_started_for_a_run_is_ended_whatever_happens(tmp_path, stage):
+    session = closing(make_session(out=tmp_path / "run"))
+    if stage is not None:
+        session.backend.raise_in[stage] = BackendError("port lost")
+    with pytest.raises(BackendError) if stage is not None else nullcontext():
+        run(session, progress=False)
+    assert session.backend.journal[-3:] == ["close", "world closed", "server ended"]
+
+
+def test_a_part_that_cannot_be_closed_does_not_keep_the_others_open(tmp_path):
+    session = closing(make_session(out=tmp_path / "run"))
+    session.backend.close = broken_close
+    with pytest.raises(OSError, match="gone"):
+        run(session, progress=False)
+    assert session.backend.journal[-2:] == ["world closed", "server ended"]
+
+
+def broken_close():
+    raise OSError("gone")
+
+
+def test_figures_of_the_session_fill_what_the_backend_does_not_know(tmp_path):
+    session = make_session(out=tmp_path / "run")
+    session.backend.statistics = lambda: {"energy_wh": None, "voltage_min_v": 11.5}
+    figures = {"energy_wh": 0.25, "voltage_min_v": 1.0, "torque_rms_ratio_max": 0.1 + 0.2}
+    report = run(replace(session, figures=lambda: figures), progress=False).report
+    assert (report["energy_wh"], report["voltage_min_v"]) == (0.25, 11.5)
+    assert report["torque_rms_ratio_max"] == 0.3
+    assert report["target_speed_mps"] == 0.15
 
 
 def test_a_folder_that_holds_something_is_not_written_into(tmp_path):

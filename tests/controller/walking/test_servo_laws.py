@@ -14,7 +14,7 @@ from controller.walking.pendulum import Pendulum
 from controller.walking.pendulum_state import PendulumState
 from controller.walking.servo_config import servo_walking_config
 from controller.walking.step_timing import remaining_time
-from controller.walking.support_force import SupportForce
+from controller.walking.support_force import SoleForce, SupportForce
 from controller.walking.swing_trajectory import SwingTrajectory
 
 CONFIG = servo_walking_config(minibiped())
@@ -92,17 +92,19 @@ def test_landing_stays_clear_of_the_stance_foot_and_within_reach():
 
 def test_swing_path_rests_above_its_target_and_reaches_its_height():
     swing = SwingTrajectory(CONFIG.swing)
-    phases = np.linspace(0.0, 1.0, 201)
-    start, target = np.array([-0.05, 0.1]), np.array([0.05, 0.1])
-    path = swing.horizontal(phases, start, target)
-    np.testing.assert_allclose(path[0], start)
-    np.testing.assert_allclose(path[phases >= CONFIG.swing.landing_phase], [target] * 17)
-    lift = swing.lift(phases, PERIOD)
-    assert lift.max() == pytest.approx(CONFIG.swing.height)
+    phases = np.linspace(0.0, 1.0, 201).tolist()
+    start, target = (-0.05, 0.1), (0.05, 0.1)
+    path = [swing.horizontal(phase, start, target) for phase in phases]
+    assert path[0] == start
+    landed = [
+        place for p, place in zip(phases, path, strict=True) if p >= swing.config.landing_phase
+    ]
+    np.testing.assert_allclose(landed, [target] * 17)
+    lift = [swing.lift(phase, PERIOD) for phase in phases]
+    assert max(lift) == pytest.approx(CONFIG.swing.height)
     assert lift[0] == pytest.approx(0.0)
     assert lift[-1] == pytest.approx(0.0, abs=1e-12)
-    late = swing.lift(np.array([1.1]), PERIOD)
-    assert late[0] == pytest.approx(-CONFIG.swing.search_speed * PERIOD * 0.1)
+    assert swing.lift(1.1, PERIOD) == pytest.approx(-CONFIG.swing.search_speed * PERIOD * 0.1)
 
 
 def test_feed_forward_holds_the_robot_still_on_one_foot():
@@ -114,14 +116,13 @@ def test_feed_forward_holds_the_robot_still_on_one_foot():
     mujoco.mj_forward(model, data)
     point = robot.com.copy()
     point[2] = robot.corner_positions[0, 0, 2]
-    points = np.array([point, robot.ankle_positions[1]])
-    forces = np.array([[0.0, 0.0, robot.weight], [0.0, 0.0, 0.0]])
-    torque = SupportForce(robot).torques(points, forces)
+    force = np.array([0.0, 0.0, robot.weight])
+    torque = SupportForce(robot).torques([SoleForce(0, point, force)])
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
     model.dof_frictionloss[:] = 0.0
     data.qfrc_applied[robot.dof_addresses] = torque
     mujoco.mj_applyFT(
-        model, data, forces[0], np.zeros(3), point, robot.foot_bodies[0], data.qfrc_applied
+        model, data, force, np.zeros(3), point, robot.foot_bodies[0], data.qfrc_applied
     )
     mujoco.mj_forward(model, data)
     np.testing.assert_allclose(data.qacc, 0.0, atol=1e-6)

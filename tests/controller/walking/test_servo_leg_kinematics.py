@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from controller.robot_model import RobotModel
-from controller.walking.leg_kinematics import LegGeometry, yaw_rotation
+from controller.walking.leg_kinematics import LegGeometry, yaw_rows
 from hil.robot_files import load_robot
 
 DESCRIPTION = load_robot("minibiped")
@@ -52,4 +52,4 @@ def test_a_target_out_of_reach_leaves_the_knee_short_of_straight():
 
 
 def test_yaw_turns_x_to_the_left():
-    np.testing.assert_allclose(yaw_rotation(np.pi / 2) @ [1, 0, 0], [0, 1, 0], atol=1e-12)
+    np.testing.assert_allclose(np.array(yaw_rows(np.pi / 2)) @ [1, 0, 0], [0, 1, 0], atol=1e-12)

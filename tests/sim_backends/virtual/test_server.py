@@ -16,6 +16,8 @@ from dynamixel_sdk import COMM_SUCCESS, GroupSyncRead, PortHandler, Protocol2Pac
 
 from drivers.boards.frames import FrameReader
 from hil.errors import BackendError, InputError
+from hil.robot_files import load_robot
+from sim_backends.plant import Plant
 from sim_backends.virtual.remote import RemoteWorld, ServerProcess
 
 pytestmark = pytest.mark.pty
@@ -137,6 +139,13 @@ def test_a_quit_request_ends_it():
         client.sendall(b'{"do": "quit"}\n')
         assert json.loads(client.makefile().readline())["ok"]
     wait_for_end(process, folder)
+
+
+def test_figures_of_the_servos_come_over_the_control_socket(world):
+    figures = world.figures()
+    assert figures["voltage_min_v"] == pytest.approx(12.0, abs=0.1)
+    assert figures["energy_wh"] >= 0.0
+    assert set(figures) == {*Plant(load_robot("human"), 300).figures()}
 
 
 def test_a_closed_client_leaves_nothing_behind(server):

@@ -1,0 +1,1 @@
+"""Studies: many walks, run in parallel, whose figures make one table."""

@@ -1,0 +1,120 @@
+"""`stride study speeds`: which speed is reached, over a grid of sagittal and coronal speeds."""
+
+from functools import partial
+from typing import ClassVar
+
+from pydantic import Field, PositiveFloat
+
+from hil.request import RunRequest
+from hil.robot_facts import robot_facts
+from hil.robot_files import load_robot
+from hil.studies.figures_speeds import draw_speeds
+from hil.studies.study import Case, Result, RunCases, Study, StudyResult, Table
+from hil.studies.titles import outcome, title
+from hil.studies.walks import finite, mean_velocity, walk
+
+SAGITTAL_FROUDE = (-0.0662, 0.0, 0.0662, 0.1159, 0.1655, 0.2317, 0.2648, 0.3310)
+"""−0.2 … 1.0 m/s of the 70.4 kg human (L = 0.93 m) as v/√(gL)."""
+CORONAL_FROUDE = (0.0, 0.0662, -0.0662)
+"""0, ±0.2 m/s of the same."""
+
+
+class SpeedCase(Case):
+    """A walk at a constant commanded velocity."""
+
+    sagittal: float
+    """[m/s]"""
+    coronal: float
+    """[m/s]"""
+
+
+class SpeedStudy(Study):
+    """Walks at constant speeds. Reached speeds are means over whole strides, from 5 s on."""
+
+    name: ClassVar[str] = "speeds"
+    sagittal: tuple[float, ...] = Field(min_length=1)
+    """[m/s]"""
+    coronal: tuple[float, ...] = Field(min_length=1)
+    """Left positive [m/s]."""
+    duration_s: PositiveFloat
+
+    def conduct(self, run_cases: RunCases) -> StudyResult:
+        """Walk every pair of speeds."""
+        request = self.request.model_copy(update={"duration_s": self.duration_s})
+        cases = [
+            SpeedCase(request=request, sagittal=sagittal, coronal=coronal)
+            for coronal in self.coronal
+            for sagittal in self.sagittal
+        ]
+        rows = [
+            {"target_mps": case.sagittal, "target_coronal_mps": case.coronal, **result}
+            for case, result in zip(cases, run_cases(reach_speed, cases), strict=True)
+        ]
+        rows = [EMPTY | row for row in rows]
+        draw = partial(draw_speeds, title(self.request), rows)
+        return StudyResult(rows, [self._table(rows)], draw)
+
+    def _table(self, rows: list[Result]) -> Table:
+        heads = ("sagittal", "reached", "coronal", "reached", "steps", "disequil. %", "")
+        lines = [
+            (
+                f"{row['target_mps']:.2f}",
+                _speed(row["speed_mps"]),
+                f"{row['target_coronal_mps']:.2f}",
+                _speed(row["coronal_mps"]),
+                str(row["steps"]),
+                "–" if row["disequilibrium_pct"] is None else f"{row['disequilibrium_pct']:.1f}",
+                outcome(row),
+            )
+            for row in rows
+        ]
+        return Table(
+            f"{title(self.request)}: {self.duration_s:g} s at each speed [m/s]", heads, lines
+        )
+
+
+EMPTY: Result = dict.fromkeys(
+    (
+        "target_mps",
+        "target_coronal_mps",
+        "speed_mps",
+        "coronal_mps",
+        "steps",
+        "disequilibrium_pct",
+        "ending",
+        "stopped_s",
+        "error",
+    )
+)
+"""Columns of the CSV."""
+
+
+def reach_speed(case: SpeedCase) -> Result:
+    """Reached speeds, and whether the walk came to its end."""
+    schedules = case.request.schedules.model_copy(
+        update={"speed": ((0.0, case.sagittal),), "lateral": ((0.0, case.coronal),)}
+    )
+    walked = walk(case.request.model_copy(update={"schedules": schedules}))
+    sagittal, coronal = mean_velocity(walked.trace)
+    return {
+        "speed_mps": finite(sagittal),
+        "coronal_mps": finite(coronal),
+        "steps": walked.report["steps"],
+        "disequilibrium_pct": walked.report["disequilibrium_pct"],
+        "ending": walked.ending,
+        "stopped_s": walked.stopped_s,
+    }
+
+
+def _speed(value: float | None) -> str:
+    return "–" if value is None else f"{value:.3f}"
+
+
+def default_speeds(request: RunRequest) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Coronal and sagittal speeds of the human's grid, scaled to a robot by √(gL) [m/s]."""
+    facts = robot_facts(load_robot(request.robot, request.overrides))
+    coronal, sagittal = (
+        tuple(round(froude * facts.speed_scale, 2) for froude in froudes)
+        for froudes in (CORONAL_FROUDE, SAGITTAL_FROUDE)
+    )
+    return coronal, sagittal

@@ -1,0 +1,99 @@
+"""One walk of a study, in memory: the same parts as `stride walk`, without a run folder."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from hil.compose import build
+from hil.cycle import Sink
+from hil.errors import StrideError
+from hil.gait_report import measured_from
+from hil.interface import Floats, Ints
+from hil.loop import Loop
+from hil.report import make_report
+from hil.request import RunRequest
+from hil.run_folder import body_weight
+from hil.trace import Trace, TraceSink
+
+
+@dataclass(frozen=True, slots=True)
+class Walk:
+    """What a walk left behind."""
+
+    report: dict[str, Any]
+    """As `report.json`."""
+    trace: Trace
+
+    @property
+    def stopped_s(self) -> float | None:
+        """Time of the fall, or of another fault that ended the walk [s]; None at its full end."""
+        ends = [fault for fault in self.report["faults"] if fault["reaction"] != "none"]
+        return float(ends[0]["time_s"]) if ends else None
+
+    @property
+    def ending(self) -> str | None:
+        """Name of the fault that ended the walk: `fell`, most often."""
+        ends = [fault for fault in self.report["faults"] if fault["reaction"] != "none"]
+        return str(ends[0]["name"]) if ends else None
+
+
+def walk(request: RunRequest, *more: Sink) -> Walk:
+    """A walk, with further sinks. A fall is a result; raises StrideError for what cannot run."""
+    session = build(request)
+    try:
+        session.backend.open()
+        rate_hz = session.request.rate_hz or session.description.defaults.rate_hz
+        sink = TraceSink(len(session.description.joints), round(request.duration_s * rate_hz))
+        outcome = Loop(session, (sink, *more)).run()
+        trace = sink.trace()
+        report = make_report(
+            session.request,
+            session.description.name,
+            outcome,
+            trace,
+            body_weight(session.description),
+            session.backend.statistics(),
+            truth=session.world is not None,
+        )
+    finally:
+        session.close()
+    return Walk(report, trace)
+
+
+def step_starts(trace: Trace) -> tuple[Floats, Ints]:
+    """Times at which a step began [s] and the stance foot of each step."""
+    ticks = np.flatnonzero(np.diff(trace.steps) > 0) + 1
+    return trace.time_s[ticks], trace.stance[ticks]
+
+
+def mean_step_time(trace: Trace) -> float:
+    """Mean time of a step in the second half of a walk [s]. Raises StrideError without steps."""
+    times, _ = step_starts(trace)
+    times = times[len(times) // 2 :]
+    if len(times) < 2:
+        raise StrideError("the unperturbed walk has too few steps to be timed")
+    return float((times[-1] - times[0]) / (len(times) - 1))
+
+
+def mean_velocity(trace: Trace) -> tuple[float, float]:
+    """Sagittal and coronal COM speed over whole strides once the walk is steady [m/s].
+
+    Coronal sway is as large as a coronal speed, so the mean begins and ends with a step of the
+    same foot. NaN in a walk without two of them.
+    """
+    times, stance = step_starts(trace)
+    left = times[(stance == 0) & (times >= measured_from(trace))]
+    if len(left) < 2:
+        return float("nan"), float("nan")
+    begin, end = np.searchsorted(trace.time_s, (left[0], left[-1]))
+    moved = np.diff(trace.com[begin : end + 1, :2], axis=0)
+    cos, sin = np.cos(trace.heading[begin:end]), np.sin(trace.heading[begin:end])
+    forward, left_ = cos * moved[:, 0] + sin * moved[:, 1], cos * moved[:, 1] - sin * moved[:, 0]
+    span = float(left[-1] - left[0])
+    return float(forward.sum()) / span, float(left_.sum()) / span
+
+
+def finite(value: float) -> float | None:
+    """NaN means unknown, which JSON writes as null."""
+    return float(value) if np.isfinite(value) else None
