@@ -47,10 +47,10 @@ class GroupAccess:
             if not missing:
                 break
             # A silent servo silences those behind it: ask in another order each time.
-            if attempt:
-                self._await_quiet()
             shift = attempt % len(missing)
             values.update(self._read_once(register, missing[shift:] + missing[:shift]))
+            if len(values) < len(ids):
+                self._await_quiet()
         return values
 
     def _await_quiet(self) -> None:

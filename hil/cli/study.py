@@ -32,7 +32,12 @@ def pushes(
     robot: options.Robot = "minibiped",
     direction: Annotated[
         list[str] | None,
-        Option(help="forward, back_left, …; repeatable.", show_default="the four main ones"),
+        Option(
+            "--direction",
+            "-d",
+            help="forward, back_left, …; repeatable.",
+            show_default="the four main ones",
+        ),
     ] = None,
     diagonals: Annotated[bool, Option("--diagonals", help="All eight directions.")] = False,
     phases: Annotated[int, Option(help="Phases over two steps.", min=1)] = 8,
@@ -85,10 +90,12 @@ def pushes(
 def speeds(
     robot: options.Robot = "minibiped",
     sagittal: Annotated[
-        list[float] | None, Option(help="Speed in m/s; repeatable.", show_default="scaled")
+        list[float] | None,
+        Option("--sagittal", "-s", help="Speed in m/s; repeatable.", show_default="scaled"),
     ] = None,
     coronal: Annotated[
-        list[float] | None, Option(help="Speed in m/s, left positive; repeatable.")
+        list[float] | None,
+        Option("--coronal", "-c", help="Speed in m/s, left positive; repeatable."),
     ] = None,
     duration: Annotated[float, Option(help="Walking time at each speed in s.")] = 20.0,
     backend: study_options.Backend = None,
@@ -131,7 +138,8 @@ def turns(
         Option(help="rad/s, 0 for at once; repeatable.", show_default="1; 0 for torque robots"),
     ] = None,
     rate: Annotated[
-        list[int] | None, Option(help="Control rate in Hz; repeatable.", show_default="robot's")
+        list[int] | None,
+        Option("--rate", "-r", help="Control rate in Hz; repeatable.", show_default="robot's"),
     ] = None,
     pd: Annotated[
         list[str] | None, Option(help="Of a torque robot; repeatable.", show_default="both")
@@ -178,7 +186,8 @@ def turns(
 def rates(
     robot: options.Robot = "minibiped",
     rate: Annotated[
-        list[int] | None, Option(help="Control rate in Hz; repeatable.", show_default="2000 … 30")
+        list[int] | None,
+        Option("--rate", "-r", help="Control rate in Hz; repeatable.", show_default="2000 … 30"),
     ] = None,
     pd: Annotated[
         list[str] | None, Option(help="Of a torque robot; repeatable.", show_default="both")
@@ -232,7 +241,10 @@ def stabilizer(
     rate: options.Rate = None,
     pd: options.Pd = None,
     estimator: options.Estimator = None,
-    ankle_limit: options.AnkleLimit = None,
+    ankle: Annotated[
+        list[str] | None,
+        Option(help="Ankle rule: none, guards, limit; repeatable.", show_default="guards, limit"),
+    ] = None,
     seed: options.Seed = 0,
     overrides: options.Overrides = None,
     jobs: study_options.Jobs = 1,
@@ -240,14 +252,14 @@ def stabilizer(
     quick: study_options.Quick = False,
     as_json: study_options.Json = False,
 ) -> None:
-    """Ground contact stabilizer: solvers, reduced models, ankle limit; errors and time."""
+    """Ground contact stabilizer: solvers, reduced models, ankle rules; errors and time."""
     from hil.studies.stabilizer import MODELS, SOLVERS, StabilizerStudy
 
     request = resolved_request(
         robot, speed, overrides, backend=backend, rate_hz=rate, pd=pd, estimator=estimator,
         seed=seed, stabilizer=True,
     )  # fmt: skip
-    limits = (False, True) if ankle_limit is None else (ankle_limit,)
+    ankles = tuple(ankle or ("guards", "limit"))
     study = checked(
         StabilizerStudy,
         request=request,
@@ -255,7 +267,7 @@ def stabilizer(
         solvers=tuple(solver or SOLVERS)[: 1 if quick else None],
         models=MODELS if models and not quick else (),
         model_solver=model_solver,
-        ankle_limits=limits[-1:] if quick else limits,
+        ankles=ankles[-1:] if quick else ankles,
         probe_s=3.0 if quick else 10.0,
     )
     conduct(study, out, jobs, as_json=as_json)

@@ -5,7 +5,9 @@ from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MultipleLocator
 
 from hil.figure_robot import LEFT, RIGHT
 from hil.figures import STYLE
@@ -36,19 +38,29 @@ def draw_pushes(
         around.plot([*angles, angles[0]], [*least, least[0]], "o-", color=LEFT, label="all phases")
         around.set_xticks(angles, [name.replace("_", "\n") for name in around_names])
         around.set_ylim(bottom=0)
+        around.yaxis.set_major_locator(MultipleLocator(0.1))
         around.tick_params(axis="y", labelsize=7)
         around.set_title("Survived push as Δv/√(gL); ahead is up")
         around.legend(loc="upper left", bbox_to_anchor=(-0.35, 1.05))
-        for name in names:
-            where = [row["phase"] for row in rows if row["direction"] == name]
-            phases.plot(where, _forces(rows, name), "o-", label=name.replace("_", " "))
-        phases.axhline(largest_n, color="#9a9ea4", linestyle=":", linewidth=1.0)
-        phases.set_ylim(0, 1.2 * largest_n)
-        phases.set(title="Largest survived force; dotted: the ladder's end",
-                   xlabel="phase of the push [steps]", ylabel="[N]")  # fmt: skip
-        phases.legend(ncols=4, loc="upper center", fontsize=8)
+        _draw_phases(phases, rows, names, largest_n)
         figure.suptitle(title, x=0.01, ha="left", fontweight="bold")
         figure.savefig(path, dpi=90)
+
+
+def _draw_phases(axes: Axes, rows: list[Result], names: list[str], largest_n: float) -> None:
+    """Every direction and phase as a field with its force."""
+    forces = np.array([_forces(rows, name) for name in names])
+    axes.imshow(forces, cmap="RdYlGn", vmin=0.0, vmax=largest_n, aspect="auto", alpha=0.8)
+    for (line, place), force in np.ndenumerate(forces):
+        axes.text(place, line, f"{force:g}", ha="center", va="center", fontsize=8)
+    phases = [row["phase"] for row in rows if row["direction"] == names[0]]
+    axes.set_xticks(range(len(phases)), [f"{phase:.2f}" for phase in phases])
+    axes.set_yticks(range(len(names)), [name.replace("_", " ") for name in names])
+    axes.grid(False)
+    axes.set(
+        title=f"Largest survived force [N], of at most {largest_n:g}",
+        xlabel="phase of the push [steps]",
+    )
 
 
 def _forces(rows: list[Result], name: str) -> np.ndarray:

@@ -30,11 +30,11 @@ def draw_rates(title: str, rows: list[Result], duration_s: float, path: Path) ->
                 axes.plot([period], [time_s], marker=marker, color=colour)
             axes.set(xscale="log", ylim=(-0.1 * duration_s, 1.2 * duration_s))
             axes.set_ylabel(kind, rotation=0, ha="right", va="center")
+            axes.minorticks_off()
+            labels = [f"{row['period_froude']:.4f}\n{row['rate_hz']} Hz" for row in of_kind]
+            axes.set_xticks([row["period_froude"] for row in of_kind], labels)
             axes.tick_params(labelbottom=place == len(kinds))
-            for row in of_kind if place == 1 else ():
-                axes.annotate(str(row["rate_hz"]), (row["period_froude"], 1.25 * duration_s),
-                              ha="center", fontsize=7, annotation_clip=False)  # fmt: skip
-        axes.set_xlabel("control period h·√(g/L); rate in Hz above")
+        axes.set_xlabel("control period h·√(g/L) and rate")
         figure.suptitle(f"{title}: time walked, of {duration_s:g} s", x=0.01, ha="left",
                         fontweight="bold")  # fmt: skip
         figure.savefig(path, dpi=90)

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from hil.figure_robot import LEFT, RIGHT
+from hil.figure_robot import RIGHT
 from hil.figures import STYLE
 from hil.studies.study import Result
 
@@ -23,6 +23,8 @@ def draw_stabilizer(title: str, rows: list[Result], path: Path) -> None:
             if row["model_error_pct"] is not None
         }
         above.bar(list(errors), list(errors.values()), color=RIGHT, width=0.5)
+        for axes in (above, below, time):
+            axes.set_axisbelow(True)
         above.set(title="Error of the predicted forces against M0 [%]")
         _bars(below, rows, "disequilibrium_pct")
         below.set(title="Ticks in disequilibrium after foot-flat [%]")
@@ -34,19 +36,20 @@ def draw_stabilizer(title: str, rows: list[Result], path: Path) -> None:
 
 
 def _bars(axes: Axes, rows: list[Result], key: str) -> None:
-    """A pair of bars a variant: without and with the ankle limit; none where it fell."""
+    """A bar a variant and ankle rule; none where it fell."""
     names = list(dict.fromkeys(row["variant"] for row in rows))
-    for offset, limit, colour in ((-0.2, False, LEFT), (0.2, True, RIGHT)):
-        of_limit = {row["variant"]: row for row in rows if row["ankle_limit"] is limit}
-        chosen = [name for name in names if name in of_limit]
-        walked = [of_limit[name]["stopped_s"] is None for name in chosen]
+    rules = list(dict.fromkeys(row["ankle"] for row in rows))
+    width = 0.8 / len(rules)
+    for number, rule in enumerate(rules):
+        of_rule = {row["variant"]: row for row in rows if row["ankle"] == rule}
+        chosen = [name for name in names if name in of_rule]
+        walked = [of_rule[name]["stopped_s"] is None for name in chosen]
         values = [
-            of_limit[name][key] or 0.0 if ended else 0.0
+            of_rule[name][key] or 0.0 if ended else 0.0
             for name, ended in zip(chosen, walked, strict=True)
         ]
-        places = np.array([names.index(name) for name in chosen]) + offset
-        label = "with the ankle limit" if limit else "without the ankle limit"
-        axes.bar(places, values, width=0.38, color=colour, label=label)
+        places = np.array([names.index(name) for name in chosen]) + (number + 0.5) * width - 0.4
+        axes.bar(places, values, width=0.95 * width, label=f"ankle: {rule}")
         for place, ended in zip(places, walked, strict=True):
             if not ended:
                 axes.annotate("fell", (place, 0.0), rotation=90, ha="center", fontsize=7)

@@ -96,9 +96,10 @@ def reach_speed(case: SpeedCase) -> Result:
     )
     walked = walk(case.request.model_copy(update={"schedules": schedules}))
     sagittal, coronal = mean_velocity(walked.trace)
+    ended = walked.stopped_s is None
     return {
-        "speed_mps": finite(sagittal),
-        "coronal_mps": finite(coronal),
+        "speed_mps": finite(sagittal) if ended else None,
+        "coronal_mps": finite(coronal) if ended else None,
         "steps": walked.report["steps"],
         "disequilibrium_pct": walked.report["disequilibrium_pct"],
         "ending": walked.ending,

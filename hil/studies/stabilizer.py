@@ -5,7 +5,7 @@ disequilibrium and time with each of them, and the walk without stabilizer.
 """
 
 from functools import partial
-from typing import Any, ClassVar, get_args
+from typing import Any, ClassVar, Literal, get_args
 
 from pydantic import Field, PositiveFloat, PositiveInt
 
@@ -29,13 +29,19 @@ SOLVERS: tuple[StabilizerSolverName, ...] = get_args(StabilizerSolverName)
 MODELS = ("M1", "M2", "M3", "M4", "M5", "M6")
 
 
+AnkleRule = Literal["none", "guards", "limit"]
+ANKLE_RULES: tuple[AnkleRule, ...] = get_args(AnkleRule)
+"""What bounds the stance ankle's torque: nothing, the stored code's rules, or the load."""
+GUARDS_KEY = "walking.ankle_guards"
+
+
 class Variant(Config):
     """A way to keep the stance foot in contact."""
 
     solver: StabilizerSolverName | None = None
     """None: no stabilizer."""
     model: str = "M0"
-    ankle_limit: bool
+    ankle: AnkleRule
 
     @property
     def name(self) -> str:
@@ -65,8 +71,8 @@ class StabilizerCase(Case):
 class StabilizerStudy(Study):
     """Walks with the coronal speed cycling 0, +v, −v every five steps, v/√(gL) = 0.066.
 
-    Every solver with M0, then every model with one solver, each without and with the ankle
-    torque limit; `base` has no stabilizer. Times are wall times of this machine: compare them
+    Every solver with M0, then every model with one solver, each with every ankle
+    rule; `base` has no stabilizer. Times are wall times of this machine: compare them
     within one study, and run it with one job.
     """
 
@@ -77,7 +83,7 @@ class StabilizerStudy(Study):
     models: tuple[str, ...]
     model_solver: StabilizerSolverName
     """Solver with which the models are compared."""
-    ankle_limits: tuple[bool, ...] = Field(min_length=1)
+    ankles: tuple[AnkleRule, ...] = Field(min_length=1)
     probe_s: PositiveFloat
     """Length of the walk whose steps are timed [s]."""
 
@@ -92,7 +98,7 @@ class StabilizerStudy(Study):
             amplitude=FROUDE_SPEED * facts.speed_scale,
         )
         variants = self._variants()
-        compared = make(variant=Variant(ankle_limit=True), compare_models=True)
+        compared = make(variant=Variant(ankle="limit"), compare_models=True)
         cases = [compared, *(make(variant=variant) for variant in variants)]
         first, *results = run_cases(walk_variant, cases)
         errors: Result = first.get("models", {})
@@ -102,7 +108,7 @@ class StabilizerStudy(Study):
                 "variant": variant.name,
                 "solver": variant.solver,
                 "model": None if variant.solver is None else variant.model,
-                "ankle_limit": variant.ankle_limit,
+                "ankle": variant.ankle,
                 **(errors.get(variant.model, {}) if variant.solver else {}),
             }
             | result
@@ -126,14 +132,14 @@ class StabilizerStudy(Study):
         kinds += [(solver, "M0") for solver in self.solvers]
         kinds += [(self.model_solver, model) for model in self.models]
         return [
-            Variant(solver=solver, model=model, ankle_limit=limit)
-            for limit in self.ankle_limits
+            Variant(solver=solver, model=model, ankle=ankle)
+            for ankle in self.ankles
             for solver, model in kinds
         ]
 
     def _table(self, head: str, rows: list[Result]) -> Table:
         heads = (
-            "", "ankle limit", "steps", "disequil. %", "controller ms", "stabilizer ms",
+            "", "", "steps", "disequil. %", "controller ms", "stabilizer ms",
             "iterations", "limit hit %", "model error %", "sample µs", "speed error %", "",
         )  # fmt: skip
         keys = (
@@ -143,7 +149,7 @@ class StabilizerStudy(Study):
         lines = [
             (
                 row["variant"],
-                "on" if row["ankle_limit"] else "off",
+                row["ankle"],
                 str(row["steps"]),
                 *("–" if row[key] is None else f"{row[key]:.2f}" for key in keys),
                 outcome(row),
@@ -155,7 +161,7 @@ class StabilizerStudy(Study):
 
 EMPTY: Result = dict.fromkeys(
     (
-        "variant", "solver", "model", "ankle_limit", "steps", "disequilibrium_pct",
+        "variant", "solver", "model", "ankle", "steps", "disequilibrium_pct",
         "controller_ms", "stabilizer_ms", "iterations", "limit_pct", "model_error_pct",
         "sample_us", "speed_error_pct", "ending", "stopped_s", "error",
     )
@@ -192,7 +198,7 @@ class ModelErrors:
 
 def time_steps(case: StepTimeCase) -> Result:
     """Mean time of a step [s]."""
-    request = variant_request(case.request, Variant(ankle_limit=True))
+    request = variant_request(case.request, Variant(ankle="limit"))
     walked = walk(request.model_copy(update={"duration_s": case.duration_s}))
     return {"step_s": mean_step_time(walked.trace)}
 
@@ -213,15 +219,17 @@ def walk_variant(case: StabilizerCase) -> Result:
 
 
 def variant_request(request: RunRequest, variant: Variant) -> RunRequest:
-    """The request with a variant's stabilizer and ankle limit."""
+    """The request with a variant's stabilizer and ankle rule."""
     changes: dict[str, Any] = {
         "stabilizer": variant.solver is not None,
         "stabilizer_solver": variant.solver,
-        "ankle_limit": variant.ankle_limit,
+        "ankle_limit": variant.ankle == "limit",
     }
-    if variant.solver is None:
-        return request.model_copy(update=changes)
-    overrides = (*request.overrides, f"{MODEL_KEY}={variant.model}")
+    overrides = request.overrides
+    if variant.ankle == "guards":
+        overrides += (f"{GUARDS_KEY}=true",)
+    if variant.solver is not None:
+        overrides += (f"{MODEL_KEY}={variant.model}",)
     return request.model_copy(update={**changes, "overrides": overrides})
 
 
@@ -240,9 +248,9 @@ def _figures(walked: Walk) -> Result:
 
 
 def _add_stabilizer_time(rows: list[Result]) -> None:
-    """The controller's time beyond that of the base walk with the same ankle limit [ms]."""
-    base = {row["ankle_limit"]: row["controller_ms"] for row in rows if row["solver"] is None}
+    """The controller's time beyond that of the base walk with the same ankle rule [ms]."""
+    base = {row["ankle"]: row["controller_ms"] for row in rows if row["solver"] is None}
     for row in rows:
-        own, without = row["controller_ms"], base.get(row["ankle_limit"])
+        own, without = row["controller_ms"], base.get(row["ankle"])
         if row["solver"] is not None and own is not None and without is not None:
             row["stabilizer_ms"] = own - without

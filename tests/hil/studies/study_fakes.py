@@ -22,6 +22,7 @@ class NumberStudy(Study):
     """The squares of the first numbers."""
 
     name: ClassVar[str] = "numbers"
+    first: int
     count: int
     log: str
     """Folder in which every case that runs leaves a file."""
@@ -30,7 +31,7 @@ class NumberStudy(Study):
     def conduct(self, run_cases):
         cases = [
             NumberCase(request=self.request, number=number, log=self.log, wait_s=self.wait_s)
-            for number in range(self.count)
+            for number in range(self.first, self.count)
         ]
         results = run_cases(square, cases)
         rows = [
@@ -47,21 +48,23 @@ def draw(path):
 
 
 def square(case):
-    """Its square; small numbers take longer, 5 is an error of ours, and 99 a defect."""
+    """Its square; small numbers take longer. 5 is an error of ours, 20 a crash, 99 a defect."""
     with (Path(case.log) / f"{case.number}-{os.getpid()}-{time.monotonic_ns()}").open("w"):
         pass
     time.sleep(case.wait_s + 0.01 * max(0, 4 - case.number))
     if case.number == 5:
         raise BackendError("five is not for this robot")
+    if case.number == 20:
+        os._exit(1)
     if case.number == 99:
         raise ZeroDivisionError("a defect")
     return {"square": case.number**2}
 
 
-def numbers(log, count=8, wait_s=0.0, robot="human"):
+def numbers(log, count=8, first=0, wait_s=0.0, robot="human"):
     log.mkdir(exist_ok=True)
     request = RunRequest(robot=robot, backend="mujoco", rate_hz=300)
-    return NumberStudy(request=request, count=count, log=str(log), wait_s=wait_s)
+    return NumberStudy(request=request, first=first, count=count, log=str(log), wait_s=wait_s)
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from study_fakes import numbers
 
-from hil.errors import InputError
+from hil.errors import InputError, StrideError
 from hil.studies.run import run_study
 
 PROGRAM = Path(__file__).parent / "study_fakes.py"
@@ -121,9 +121,16 @@ def test_a_finished_study_runs_nothing_again(tmp_path):
 
 def test_a_defect_stops_the_study_and_names_the_case(tmp_path):
     with pytest.raises(ZeroDivisionError) as caught:
-        run_study(numbers(tmp_path / "log", count=100), tmp_path / "out", jobs=2)
+        run_study(numbers(tmp_path / "log", first=97, count=100), tmp_path / "out", jobs=1)
     notes = " ".join(caught.value.__notes__)
+    assert finished(tmp_path / "out") == 2
     assert '"number": 99' in notes and "finished cases are kept" in notes
+
+
+def test_a_worker_that_dies_is_told(tmp_path):
+    with pytest.raises(StrideError, match="worker process died"):
+        run_study(numbers(tmp_path / "log", first=19, count=22), tmp_path / "out", jobs=1)
+    assert finished(tmp_path / "out") == 1
 
 
 def test_a_folder_of_another_study_is_refused(tmp_path):

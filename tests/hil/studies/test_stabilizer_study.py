@@ -18,7 +18,7 @@ def case(variant, **values):
 
 
 def test_models_are_worse_the_more_they_leave_out():
-    result = walk_variant(case(Variant(ankle_limit=True), compare_models=True))
+    result = walk_variant(case(Variant(ankle="limit"), compare_models=True))
     errors = {name: figures["model_error_pct"] for name, figures in result["models"].items()}
     assert errors["M0"] == 0.0
     assert 0.0 < errors["M1"] < errors["M2"] < errors["M3"] < 20.0
@@ -28,14 +28,18 @@ def test_models_are_worse_the_more_they_leave_out():
 
 @pytest.mark.parametrize("solver", ["cma", "linear", "scan"])
 def test_a_stabilizer_walks_and_counts_what_it_does(solver):
-    result = walk_variant(case(Variant(solver=solver, model="M2", ankle_limit=True)))
+    result = walk_variant(case(Variant(solver=solver, model="M2", ankle="limit")))
     assert result["stopped_s"] is None and result["steps"] >= 3
     assert result["iterations"] > 0.0
     assert 0.0 <= result["disequilibrium_pct"] <= 100.0
 
 
 def test_a_variant_is_what_the_walk_is_asked_for():
-    asked = variant_request(HUMAN, Variant(solver="scan", model="M5", ankle_limit=False))
+    asked = variant_request(HUMAN, Variant(solver="scan", model="M5", ankle="guards"))
     assert (asked.stabilizer, asked.stabilizer_solver, asked.ankle_limit) == (True, "scan", False)
-    assert asked.overrides == (*HUMAN.overrides, "walking.stabilizer.model=M5")
-    assert variant_request(HUMAN, Variant(ankle_limit=True)) == HUMAN
+    assert asked.overrides == (
+        *HUMAN.overrides,
+        "walking.ankle_guards=true",
+        "walking.stabilizer.model=M5",
+    )
+    assert variant_request(HUMAN, Variant(ankle="limit")) == HUMAN
