@@ -11,8 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from drivers.dynamixel.hot_path_bench import measure_hot_path
-from hil.compose import build
+from hil.compose import build, measure_hot_path
 from hil.cycle import TickRecord
 from hil.interface import Floats
 from hil.loop import Loop

@@ -13,6 +13,7 @@ from controller.walking.stabilizer.model_comparison import ModelComparison
 from controller.walking.torque_walker import TorqueWalker
 from drivers.calibration import RobotCalibration, load_calibration
 from drivers.dynamixel.gain_mapping import GainMapping
+from drivers.dynamixel.hot_path_bench import measure_hot_path
 from drivers.robot_backend import BusBackend
 from hil.clock import MonotonicClock
 from hil.description import RobotDescription
@@ -27,6 +28,8 @@ from sim_backends.plant import Plant
 from sim_backends.virtual.remote import RemoteWorld, ServerProcess
 from sim_backends.virtual.robot import VirtualRobot
 from sim_backends.virtual.server import run_server, stdin_is_pipe
+
+__all__ = ["build", "measure_hot_path", "model_comparison", "serve_virtual"]
 
 
 def build(request: RunRequest) -> Session:
@@ -174,7 +177,8 @@ def _rate(request: RunRequest) -> int:
 
 def _initial_speed(request: RunRequest, description: RobotDescription) -> float:
     at_start = (speed for time_s, speed in request.schedules.speed if time_s == 0.0)
-    return next(at_start, description.defaults.speed)
+    speed, limit = next(at_start, description.defaults.speed), description.start.speed_limit
+    return speed if limit is None else max(-limit, min(speed, limit))
 
 
 def _ideal_calibration(description: RobotDescription, data: Mapping[str, Any]) -> RobotCalibration:

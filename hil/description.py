@@ -147,6 +147,8 @@ class Start(Config):
     """Start at the commanded speed, on the left foot, without standing first (torque robots)."""
     lateral_velocity: float = 0.0
     """Initial coronal velocity when moving [m/s]."""
+    speed_limit: PositiveFloat | None = None
+    """Largest initial sagittal speed when moving [m/s]; a faster walk is sped up to."""
 
 
 class Defaults(Config):

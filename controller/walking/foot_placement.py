@@ -11,6 +11,9 @@ from pydantic import Field, PositiveFloat
 from controller.walking.heading_frame import Pair
 from hil.validation import Config
 
+SHORTEST_BLEND = 0.1
+"""Phase over which the foot reaches its target when it is taken over late."""
+
 
 def pendulum_distance(velocity: float, height: float, gain: float, gravity: float) -> float:
     """Step distance d = k·v·√(h/g + v²/(4g²)) [m], signed like the velocity v [m/s].
@@ -33,8 +36,6 @@ class FootPlacementConfig(Config):
     """Outward offset of the landing point from the pendulum's [m]."""
     limit: PositiveFloat
     """Largest distance from the centre of mass on either axis, as a fraction of the leg."""
-    start_phase: float = Field(ge=0, lt=1)
-    """The foot leaves its start position at this phase."""
     end_phase: float = Field(gt=0)
     """The foot is on its target from this phase on."""
 
@@ -43,7 +44,8 @@ class FootPlacement:
     """Horizontal target of the swing ankle relative to the whole-body centre of mass.
 
     d_x = d(v_x) − a_x·V*_x + Δ and d_y = d(v_y) − a_y·V*_y ± w/2, both within ± limit·leg, in
-    the heading frame; the sign is that of the swing side. Between lift-off and the end phase φ_e,
+    the heading frame; the sign is that of the swing side. Between the phase φ_0 at which the
+    pendulum takes the foot over and the end phase φ_e, the part s = 1 − t² of the way is done,
     target(φ) = (1 − t²)·d + t²·start with t = clip(1 − (φ − φ_0)/(φ_e − φ_0), 0, 1).
     """
 
@@ -74,10 +76,13 @@ class FootPlacement:
         y += outward - offset_y * wanted[1]
         return min(max(x, -limit), limit), min(max(y, -limit), limit)
 
-    def blend(self, phase: float, landing: Pair, start: Pair) -> Pair:
-        """Target at a phase, between the start of the swing and the landing point [m]."""
-        config = self._config
-        span = config.end_phase - config.start_phase
-        t = min(max(1.0 - (phase - config.start_phase) / span, 0.0), 1.0)
-        to, back = 1.0 - t * t, t * t
-        return to * landing[0] + back * start[0], to * landing[1] + back * start[1]
+    def share(self, phase: float, take_over: float | None) -> float:
+        """Part s of the way from the start of the swing to the landing point.
+
+        `take_over` is φ_0, none before it.
+        """
+        if take_over is None:
+            return 0.0
+        span = max(self._config.end_phase - take_over, SHORTEST_BLEND)
+        t = min(max(1.0 - (phase - take_over) / span, 0.0), 1.0)
+        return 1.0 - t * t

@@ -13,12 +13,13 @@ from controller.walking.torque_config import LearnedVelocityConfig
 
 
 class LearnedVelocity:
-    """Deviation f(φ) from the step's mean speed, per stance side, sagittal and coronal.
+    """Deviation f(φ) from the desired speed, per stance side, sagittal and coronal.
 
-    At a step's end, with the observed deviation f_obs at k uniform knots and
-    Δ_avg = mean|f_obs − f|: if Δ_avg is below the threshold,
-    f ← f + r·clip(f_obs − f, ±Δ_avg). Knots are joined by Catmull-Rom splines; those that the
-    step did not reach take its last deviation.
+    At a step's end, with the observed speed v at k uniform knots, normalised so that its median
+    (or mean, as configured) is that of the desired speed, f_obs = v − median(v), and
+    Δ = mean|f_obs − f|: if Δ is below the threshold, f ← f + r·clip(f_obs − f, ±Δ). So the curve
+    learns a shape only: the mean speed is the offset's (`velocity_offset`). Knots are joined by
+    Catmull-Rom splines; those that the step did not reach take its last deviation.
     """
 
     def __init__(self, config: LearnedVelocityConfig, capacity: int) -> None:
@@ -49,7 +50,9 @@ class LearnedVelocity:
         count, self._count = self._count, 0
         if not learn or count == 0:
             return
-        speed = self._speed[:count] - self._speed[:count].mean(axis=0)
+        recorded = self._speed[:count]
+        median = self._config.normalise == "median"
+        speed = recorded - (np.median if median else np.mean)(recorded, axis=0)
         for axis in range(2):
             observed = np.interp(self._at, self._phase[:count], speed[:, axis])
             error = observed - self.values[stance, axis]
@@ -57,6 +60,11 @@ class LearnedVelocity:
             if mean < self._config.threshold:
                 self.values[stance, axis] += self._config.rate * np.clip(error, -mean, mean)
         self._tables[stance] = self._table(stance)
+
+    def reset(self) -> None:
+        """Back to the constant desired speed."""
+        self.values[:] = 0.0
+        self._tables = [self._table(side) for side in range(2)]
 
     def _table(self, stance: int) -> CurveTable:
         curves = [list(zip(self._at, values, strict=True)) for values in self.values[stance]]

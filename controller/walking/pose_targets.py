@@ -9,10 +9,11 @@ import numpy as np
 
 from controller.robot_model import RobotModel
 from controller.walking.gait import Gait
+from controller.walking.hand_poses import HandPoses
 from controller.walking.joint_groups import JointGroups
 from controller.walking.key_poses import CurveTable
 from controller.walking.pose_tracking import PoseTracking
-from controller.walking.rotations import turn_about_y, yaw_pitch_roll
+from controller.walking.rotations import turn_about_y, turn_about_z, yaw_pitch_roll
 from controller.walking.swing_leg import SwingLeg
 from controller.walking.torque_config import TorqueWalkingConfig
 from hil.description import RobotDescription
@@ -38,6 +39,11 @@ class PoseTargets:
         self._back = groups.index("back")
         self._hips, self._knees = groups.legs("hip"), groups.legs("knee")
         self._ankles = groups.legs("ankle")
+        self._hands = (
+            HandPoses(config.hands, robot, groups, self._curves, config.gait.max_phase)
+            if config.hands is not None
+            else None
+        )
         held = _start_pose(description, robot, groups)
         relative = tracking.relative[: len(groups)]
         tracking.target[: len(groups)][relative] = held[relative]
@@ -56,7 +62,18 @@ class PoseTargets:
         turn_about_y(target[self._ankles[swing]], swing_foot)
         tracking.target_rate[self._hips[gait.stance]] = 0.0
         tracking.target_rate[self._knees[gait.stance]] = 0.0
+        if self._hands is not None:
+            self._pose_arms(self._hands, gait)
         return drop
+
+    def _pose_arms(self, hands: HandPoses, gait: Gait) -> None:
+        """Keep the hands where they belong."""
+        target = self._tracking.target
+        for (shoulder, elbow), pose in zip(
+            hands.groups, hands.at(gait.stance, gait.phase), strict=True
+        ):
+            target[shoulder] = pose[:9].reshape(3, 3)
+            turn_about_z(target[elbow], float(pose[9]))
 
     def set_swing_leg(self, swing: int, leg: SwingLeg) -> None:
         """Take over the inverse kinematics of the swing hip and knee."""

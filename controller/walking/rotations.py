@@ -26,6 +26,13 @@ def turn_about_y(rotation: Floats, angle: float) -> None:
     rotation[2, 0] = -sine
 
 
+def turn_about_z(rotation: Floats, angle: float) -> None:
+    """Make a rotation about z of one that already is, shape (3, 3), one by `angle` [rad]."""
+    rotation[0, 0] = rotation[1, 1] = math.cos(angle)
+    rotation[1, 0] = sine = math.sin(angle)
+    rotation[0, 1] = -sine
+
+
 def yaw_pitch_roll(yaw: float, pitch: float, roll: float) -> list[list[float]]:
     """Rows of R_z(yaw)·R_y(pitch)·R_x(roll), angles in rad."""
     cy, sy, cp, sp = math.cos(yaw), math.sin(yaw), math.cos(pitch), math.sin(pitch)

@@ -12,9 +12,13 @@ from controller.walking.gait import Gait
 from controller.walking.heading import HeadingRamp
 from controller.walking.heading_frame import HeadingFrame, Pair
 from controller.walking.learned_velocity import LearnedVelocity
+from controller.walking.leg_crossing import LegCrossing
+from controller.walking.recovery import Recovery
 from controller.walking.rotations import about_z, heading_of
 from controller.walking.step_average import StepAverage
+from controller.walking.take_over import TakeOver
 from controller.walking.torque_config import TorqueWalkingConfig
+from controller.walking.velocity_offset import VelocityOffset
 from hil.interface import Estimate, Floats, Reference
 
 
@@ -27,16 +31,23 @@ class StepPlanner:
     def __init__(
         self, config: TorqueWalkingConfig, robot: RobotModel, dt: float, speed: float
     ) -> None:
+        sole_half_width = float(robot.corner_offsets[0, :, 1].max())
         self._robot = robot
         self._dt = dt
         self.gait = Gait(config.gait, robot.weight)
         self.heading_ramp = HeadingRamp(config.heading)
         self._command = CommandRamp(config.command, (speed, 0.0))
         self._placement = FootPlacement(config.placement, robot.leg_length, robot.gravity)
+        self._take_over = TakeOver(config.take_over)
+        self._crossing = LegCrossing(2.0 * sole_half_width + config.leg_crossing.clearance)
         self._own_width = 2.0 * config.placement.half_width
         self.alteration = Alteration(config.alteration)
-        self._average = StepAverage()
+        self.coronal_alteration = Alteration(config.coronal_alteration)
+        self._last_coronal: float | None = None
+        self._averages = (StepAverage(), StepAverage())
         longest = config.gait.max_phase * config.gait.period / dt
+        self._offset = VelocityOffset(config.velocity_offset)
+        self.recovery = Recovery(config.recovery)
         self._learned = LearnedVelocity(config.learned_velocity, math.ceil(longest) + 1)
         self._frame = HeadingFrame()
         self._angle = 0.0
@@ -57,26 +68,50 @@ class StepPlanner:
 
     def update(self, estimate: Estimate, loads: Floats, reference: Reference) -> None:
         """Move the plan on by one tick; `loads` are the vertical forces on the feet [N]."""
-        gait, robot = self.gait, self._robot
+        gait = self.gait
         command = self._command.update(self._dt, reference.speed, reference.lateral)
         stance = gait.stance
         ended = gait.advance(self._dt, float(loads[gait.swing]))
         if ended:
-            self.alteration.end_step(self._average.finish(), command[0])
-            self._learned.end_step(stance, learn=not self.heading_ramp.turning)
+            self._end_step(stance, command)
         self._turn(self.heading_ramp.update(self._dt, gait, reference.heading))
         self.new_step = ended or self._first
         self._first = False
         if self.new_step:
             self._begin_step()
         self._latch_flat_foot(estimate.foot_force[gait.stance])
-        u, v, _ = robot.com_velocity.tolist()
+        self._observe_speed(command)
+        self._place_foot(command, reference.step_width)
+
+    def _end_step(self, stance: int, command: Pair) -> None:
+        """Judge the step that `stance` carried, and adapt to it unless it is a recovery step."""
+        averages = self._averages[0].finish(), self._averages[1].finish()
+        recovered = self.recovery.active
+        if self.recovery.end_step(self.heading_ramp.turning):
+            self._learned.reset()
+        steady = not (self.recovery.active or recovered)
+        if steady:
+            self.alteration.end_step(averages[0], command[0])
+            if self._last_coronal is not None:
+                both = 0.5 * (averages[1] + self._last_coronal)
+                self.coronal_alteration.end_step(both, command[1])
+            self._offset.end_step(averages, command)
+        self._last_coronal = averages[1] if steady else None
+        self._learned.end_step(stance, learn=steady and not self.heading_ramp.turning)
+
+    def _observe_speed(self, command: Pair) -> None:
+        """Take the speed of the tick, and what is wanted of it."""
+        gait = self.gait
+        u, v, vertical = self._robot.com_velocity.tolist()
         self.velocity = self._frame.to_heading((u, v))
-        self._average.add(self.velocity[0])
+        self._averages[0].add(self.velocity[0])
+        self._averages[1].add(self.velocity[1])
         self._learned.observe(gait.phase, self.velocity)
         sagittal, coronal = self._learned.deviation(gait.stance, gait.phase)
-        self.wanted = (command[0] + sagittal, command[1] + coronal)
-        self._place_foot(command, reference.step_width)
+        offset = self._offset.value
+        self.wanted = (command[0] + sagittal + offset[0], command[1] + coronal + offset[1])
+        self.recovery.observe(self.velocity, self.wanted, command)
+        self._take_over.update(gait.phase, vertical)
 
     def _turn(self, angle: float) -> None:
         """Set the heading frame [rad]."""
@@ -91,6 +126,7 @@ class StepPlanner:
         x, y, _ = (robot.ankles[self.gait.swing] - robot.com).tolist()
         self._swing_start = self._frame.to_heading((x, y))
         self.foot_heading = None
+        self._take_over.begin_step(self.recovery.active)
 
     def _latch_flat_foot(self, corners: Floats) -> None:
         gait = self.gait
@@ -108,8 +144,24 @@ class StepPlanner:
             height - float(robot.ankles[gait.stance][2]),
             command,
             self.alteration.value,
-            -gait.stance_sign * 0.5 * width,
+            self.coronal_alteration.value - gait.stance_sign * 0.5 * width,
         )
-        offset = self._placement.blend(gait.phase, landing, self._swing_start)
-        ahead_x, ahead_y = self._frame.to_world(offset)
+        share = self._placement.share(gait.phase, self._take_over.phase)
+        start = self._swing_start
+        ahead = start[0] + share * (landing[0] - start[0])
+        aside = start[1] + share * (landing[1] - start[1])
+        aside += self._sidestep(start, landing, share)
+        ahead_x, ahead_y = self._frame.to_world((ahead, aside))
         self.foot_target[:2] = x + ahead_x, y + ahead_y
+
+    def _sidestep(self, start: Pair, landing: Pair, share: float) -> float:
+        """Coronal offset that leads the swing foot round the stance foot [m]."""
+        gait, robot = self.gait, self._robot
+        x, y, _ = (robot.com - robot.ankles[gait.stance]).tolist()
+        com_x, com_y = self._frame.to_heading((x, y))
+        return self._crossing.sidestep(
+            (com_x + start[0], com_y + start[1]),
+            (com_x + landing[0], com_y + landing[1]),
+            share,
+            -gait.stance_sign,
+        )

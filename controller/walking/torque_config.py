@@ -8,9 +8,14 @@ from controller.walking.alteration import AlterationConfig
 from controller.walking.command_ramp import CommandConfig
 from controller.walking.foot_placement import FootPlacementConfig
 from controller.walking.gait import GaitConfig
+from controller.walking.hand_poses import HandPosesConfig
 from controller.walking.heading import HeadingConfig
 from controller.walking.key_poses import Knots
+from controller.walking.leg_crossing import LegCrossingConfig
+from controller.walking.recovery import RecoveryConfig
 from controller.walking.stabilizer.config import StabilizerConfig
+from controller.walking.take_over import TakeOverConfig
+from controller.walking.velocity_offset import VelocityOffsetConfig
 from hil.validation import Config
 
 Vector3 = tuple[float, float, float]
@@ -84,6 +89,8 @@ class LearnedVelocityConfig(Config):
     """Mean deviation above which a step is not learned from [m/s]."""
     rate: float = Field(gt=0, le=1)
     """Part of the clipped deviation that is adopted."""
+    normalise: Literal["median", "mean"]
+    """What of the observed speed is made equal to that of the curve; the seed: the median."""
 
 
 class AnkleLimitConfig(Config):
@@ -100,11 +107,19 @@ class TorqueWalkingConfig(Config):
     heading: HeadingConfig
     command: CommandConfig
     placement: FootPlacementConfig
+    take_over: TakeOverConfig
+    leg_crossing: LegCrossingConfig
     alteration: AlterationConfig
+    coronal_alteration: AlterationConfig
+    """The same for the coronal axis, by the mean speed of two steps."""
     swing_leg: SwingLegConfig
     virtual_force: VirtualForceConfig
     learned_velocity: LearnedVelocityConfig
+    velocity_offset: VelocityOffsetConfig
+    recovery: RecoveryConfig
     root_balance: RootBalanceConfig
+    hip_gravity: Literal["implicit", "always", "never"]
+    """With which PD the stance hip carries the weights above it (`hip_gravity`)."""
     ankle_limit: AnkleLimitConfig
     ankle_guards: bool = False
     """Guard the ankles by the rules of the first author's stored code (`ankle_guards`)."""
@@ -122,6 +137,8 @@ class TorqueWalkingConfig(Config):
     implicit_gain_rate: int
     """Gain set of implicit PD, whatever the rate, unless `gain_rate` is set."""
     key_poses: KeyPoses
+    hands: HandPosesConfig | None = None
+    """Where the hands are kept; none: the arms hold the start pose."""
     fallen_height: PositiveFloat
     """The robot has fallen, and all torques are zero, with the root below this height [m]."""
 

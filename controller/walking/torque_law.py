@@ -12,6 +12,7 @@ from controller.robot_model import RobotModel
 from controller.walking.ankle_guards import AnkleGuards
 from controller.walking.ankle_limit import limited, sole_levers
 from controller.walking.gravity_compensation import GravityCompensation
+from controller.walking.hip_gravity import HipGravity
 from controller.walking.implicit_pd import ImplicitPd
 from controller.walking.joint_groups import JointGroups
 from controller.walking.pose_tracking import PoseTracking
@@ -46,6 +47,8 @@ class TorqueLaw:
         trunk[self._hips] = False
         self._trunk = np.flatnonzero(trunk)
         self._gravity = GravityCompensation(robot, groups)
+        weighed = config.hip_gravity == "always" or (config.hip_gravity == "implicit" and implicit)
+        self._hip_gravity = HipGravity(robot, groups) if weighed else None
         self._virtual = VirtualForce(config.virtual_force, robot, groups, groups.index("back"))
         self._implicit = (
             ImplicitPd(robot, groups, self.tracking, self._trunk, dt) if implicit else None
@@ -75,6 +78,9 @@ class TorqueLaw:
         self._balance_root(vectors, hips, shares)
         torque = vectors[: len(self.groups)]
         torque += self._gravity.torques(gait.stance)
+        if self._hip_gravity is not None:
+            load = float(loads[gait.swing])
+            torque[hips[0]] += self._hip_gravity.torque(gait.stance, shares[0], load)
         if gait.foot_flat:
             self._push_body(torque, plan, loads, forefeet)
         self._last_loads = loads

@@ -56,11 +56,11 @@ def test_left_and_right_mirror_each_other(human, model):
 
 
 def test_middle_hinge_of_a_ball_joint_stays_off_its_singularity(human):
-    """The middle angle of the start pose is near 0; the hanging arms turn the first hinge."""
+    """The middle angle of the start pose is small; the arms' first hinge turns them down."""
     start = dict(zip(human.joint_names, human.start_position, strict=True))
     for name in human.joint_names:
         if name.endswith("_yaw") and "shoulder" in name:
-            assert abs(start[name]) < 0.1
+            assert abs(start[name]) < 0.3
         if name.endswith("_roll") and ("hip" in name or name.startswith(("back", "neck"))):
             assert abs(start[name]) < 0.1
 

@@ -1,4 +1,4 @@
-"""Whole walks through the composition root: every rung that needs no terminals stays on its feet."""
+"""Whole walks through the composition root: every rung that needs no terminals walks."""
 
 import pytest
 

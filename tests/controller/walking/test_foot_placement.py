@@ -18,7 +18,6 @@ CONFIG = FootPlacementConfig(
     speed_offset=(0.1, 0.18),
     half_width=0.05,
     limit=0.4,
-    start_phase=0.2,
     end_phase=0.9,
 )
 
@@ -51,9 +50,16 @@ def test_distance_is_limited_to_a_part_of_the_leg():
     assert d == pytest.approx([0.372, -0.372])
 
 
-def test_blend_leaves_at_the_start_phase_and_arrives_at_the_end_phase():
+def test_foot_is_led_from_the_take_over_to_the_end_phase():
     placement = FootPlacement(CONFIG, 0.93, 9.81)
-    start, landing = np.array([-0.3, 0.1]), np.array([0.2, 0.05])
-    assert placement.blend(0.1, landing, start) == pytest.approx(start)
-    assert placement.blend(0.55, landing, start) == pytest.approx(0.75 * landing + 0.25 * start)
-    assert placement.blend(0.95, landing, start) == pytest.approx(landing)
+    assert placement.share(0.5, None) == 0.0
+    assert placement.share(0.1, 0.2) == 0.0
+    assert placement.share(0.55, 0.2) == pytest.approx(0.75)
+    assert placement.share(0.45, 0.0) == pytest.approx(0.75)
+    assert placement.share(0.95, 0.2) == 1.0
+
+
+def test_late_take_over_does_not_make_the_foot_jump():
+    placement = FootPlacement(CONFIG, 0.93, 9.81)
+    assert placement.share(0.9, 0.88) < 0.4
+    assert placement.share(0.98, 0.88) == pytest.approx(1.0)

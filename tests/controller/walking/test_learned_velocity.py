@@ -6,7 +6,7 @@ import pytest
 from controller.walking.learned_velocity import LearnedVelocity
 from controller.walking.torque_config import LearnedVelocityConfig
 
-CONFIG = LearnedVelocityConfig(knots=11, threshold=0.6, rate=0.5)
+CONFIG = LearnedVelocityConfig(knots=11, threshold=0.6, rate=0.5, normalise="mean")
 PHASES = np.linspace(0.0, 1.0, 201)
 
 
@@ -56,3 +56,18 @@ def test_longer_step_than_expected_is_no_error():
     learned = LearnedVelocity(CONFIG, capacity=50)
     teach(learned, 2, wave)
     assert np.isfinite(learned.values).all()
+
+
+def test_median_of_the_curve_stays_zero_where_the_seed_normalises():
+    """A short peak moves the mean of the step's speed, not its median."""
+    learned = LearnedVelocity(CONFIG.model_copy(update={"normalise": "median"}), capacity=300)
+    teach(learned, 25, lambda phase: np.array([0.5 + 0.3 * (phase > 0.75), 0.0]))
+    assert learned.deviation(0, 0.3)[0] == pytest.approx(0.0, abs=0.01)
+    assert learned.deviation(0, 0.9)[0] == pytest.approx(0.3, abs=0.03)
+
+
+def test_reset_returns_to_the_constant_speed():
+    learned = LearnedVelocity(CONFIG, capacity=300)
+    teach(learned, 3, wave)
+    learned.reset()
+    assert learned.deviation(0, 0.25) == (0.0, 0.0)

@@ -8,7 +8,7 @@ from hil.errors import DescriptionError
 from hil.interface import Estimate, Reference
 from hil.robot_files import load_robot
 
-from .conftest import HumanWalk
+from .conftest import WARY, HumanWalk
 
 
 @pytest.mark.parametrize(
@@ -99,6 +99,67 @@ def test_slow_without_the_alteration():
     """Frozen at 0 the virtual force alone does not reach the commanded speed."""
     human = HumanWalk(overrides=without("alteration", gain=0.0, start=0.0)).walk(8.0)
     assert human.fell or human.mean_velocity(4.0)[0] < 0.4
+
+
+def test_step_width_changes_during_the_walk():
+    """Mean lateral distance of the ankles at touch-down, from step to step."""
+
+    def ankle_distance(human):
+        widths, steps = [], human.steps
+        while len(widths) < 6:
+            human.tick()
+            if human.steps != steps:
+                steps = human.steps
+                left, right = human.walker._robot.ankles
+                widths.append(abs(left[1] - right[1]))
+        return np.mean(widths)
+
+    human = HumanWalk().walk(4.0)
+    own = ankle_distance(human)
+    human.reference.step_width = 0.2
+    human.walk(3.0)
+    assert ankle_distance(human) > own + 0.05
+    assert not human.fell
+
+
+def test_strong_push_is_followed_by_recovery_steps_that_end():
+    human = HumanWalk(225, overrides=WARY).walk(4.0)
+    plan = human.walker._plan
+    assert not plan.recovery.active
+    human.plant.set_push(np.array([-150.0, 0.0, 0.0]))
+    human.walk(0.3)
+    human.plant.set_push(np.zeros(3))
+    altered, recovered = plan.alteration.value, False
+    for _ in range(round(4.0 * human.rate)):
+        human.tick()
+        recovered |= plan.recovery.active
+    assert recovered
+    assert not plan.recovery.active
+    assert not human.fell
+    assert altered < 0.0
+
+
+def test_coronal_speed_is_exact_by_its_alteration():
+    def coronal_speed(overrides):
+        human = HumanWalk(overrides=overrides).walk(3.0)
+        human.reference.lateral = 0.3
+        human.walk(10.0)
+        assert not human.fell
+        return human.mean_velocity(5.0)[1]
+
+    assert coronal_speed(WARY) == pytest.approx(0.3, abs=0.02)
+    off = "walking.coronal_alteration.gain=0.0"
+    assert coronal_speed((*WARY, off)) < 0.28
+
+
+def test_walks_sideways_and_back_at_60_hz():
+    """Coronal speed 0, 0.2, -0.2 m/s, five steps each: the seed's own cycle."""
+    human = HumanWalk(60, "implicit", overrides=WARY)
+    while human.time < 30.0 and not human.fell:
+        human.reference.lateral = (0.0, 0.2, -0.2)[human.steps // 5 % 3]
+        human.tick()
+    assert not human.fell
+    assert human.mean_velocity(20.0)[0] == pytest.approx(0.5, rel=0.05)
 
 
 def test_gains_of_300_hz_need_implicit_pd_at_120_hz():

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from controller.robot_model import RobotModel
-from controller.walking.stabilizer.comparison import ModelComparison
 from controller.walking.stabilizer.model_choice import HELD_TICKS, ModelChoice
+from controller.walking.stabilizer.model_comparison import ModelComparison
 from controller.walking.stabilizer.reduced_models import PARTS, build
 from controller.walking.stabilizer.response import ResponseModel
 from hil.robot_files import load_robot
@@ -65,8 +65,9 @@ def test_whole_model_predicts_the_next_step_exactly(edge_loaded, response):
 
 def test_comparison_ranks_the_models(edge_loaded):
     comparison = ModelComparison(edge_loaded.description, 300)
-    comparison.forces(edge_loaded.estimate, edge_loaded.torques, edge_loaded.stance, False)
-    errors = {row.name: row.error_pct for row in comparison.accuracy()}
+    comparison.add(edge_loaded.estimate, edge_loaded.torques, edge_loaded.stance, False)
+    shares = comparison.errors / comparison.load
+    errors = dict(zip(comparison.names, 100.0 * shares, strict=True))
     assert errors["M0"] == 0.0
     assert 0.0 < errors["M2"] < 5.0
     assert errors["M2"] < errors["M4"]

@@ -45,8 +45,7 @@ def test_without_stabilizer_and_limit_the_foot_rolls():
     assert disequilibrium(stabilized(stabilizer=False), 4.0) > 0.3
 
 
-@pytest.mark.parametrize("pd", ["explicit", "implicit"])
-@pytest.mark.parametrize("solver", ["linear", "scan"])
+@pytest.mark.parametrize(("pd", "solver"), [("explicit", "linear"), ("implicit", "scan")])
 def test_stabilizer_keeps_the_foot_on_its_sole(pd, solver):
     human = stabilized(pd, solver)
     assert disequilibrium(human, 4.0) < 0.05
