@@ -221,8 +221,11 @@ class BusBackend:
                 BusServo(servo.id, joint)
                 for servo, joint in zip(part.servos, part.joints, strict=True)
             ]
+            name = part.name
             buses.append(
-                ServoBus(part.name, part.port, part.timing, servos, self._states, fast[part.name])
+                ServoBus(
+                    name, part.port, part.timing, servos, self._states, fast[name], margins[name]
+                )
             )
         self._group = BusGroup(buses, self.clock)
 

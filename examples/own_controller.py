@@ -32,6 +32,8 @@ class KneeBends:
         self._first_ns: int | None = None
 
     def step(self, estimate: Estimate, reference: Reference) -> JointCommand:
+        """The command of this tick."""
+        del reference  # Knee bends have no speed.
         if self._first_ns is None:
             self._first_ns = estimate.time_ns
         phase = np.pi * (estimate.time_ns - self._first_ns) * 1e-9
