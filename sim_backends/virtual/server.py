@@ -63,6 +63,9 @@ class VirtualRobotServer:
         self._ahead_ns = 1000 * description.timing.usb_transfer_us
         self._running = True
         self._publish()
+        # A full collection of what start-up made takes 25 ms, in which no servo would answer.
+        gc.collect()
+        gc.freeze()
 
     def ports(self) -> dict[str, Any]:
         """What the ready line tells."""
@@ -75,9 +78,6 @@ class VirtualRobotServer:
 
     def serve(self, watch_stdin: bool) -> None:
         """Run until told to stop. Raises BackendError when the simulation diverges."""
-        # A full collection of what start-up made takes 25 ms, in which no servo would answer.
-        gc.collect()
-        gc.freeze()
         self._start_ns = time.monotonic_ns() - self._robot.clock.now_ns()
         sources: dict[int, Callable[[int], None]] = {}
         with select.epoll() as poll:

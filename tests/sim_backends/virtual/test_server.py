@@ -39,18 +39,27 @@ def world(server):
     made.close()
 
 
+def answered(call, attempts=5):
+    """What a call of the SDK returns once it is answered: a busy machine may miss its 34 ms."""
+    for _ in range(attempts):
+        result = call()
+        if (result[-2] if isinstance(result, tuple) else result) == COMM_SUCCESS:
+            return result
+    return result
+
+
 def test_the_sdk_s_own_port_talks_to_it(server):
     port = PortHandler(server.port_urls["left_leg"])
     port.setBaudRate(4_000_000)
     sdk = Protocol2PacketHandler()
     try:
-        assert sdk.ping(port, 1) == (1020, COMM_SUCCESS, 0)
-        assert sdk.write2ByteTxRx(port, 1, 84, 640) == (COMM_SUCCESS, 0)
-        assert sdk.read2ByteTxRx(port, 1, 84) == (640, COMM_SUCCESS, 0)
+        assert answered(lambda: sdk.ping(port, 1)) == (1020, COMM_SUCCESS, 0)
+        assert answered(lambda: sdk.write2ByteTxRx(port, 1, 84, 640)) == (COMM_SUCCESS, 0)
+        assert answered(lambda: sdk.read2ByteTxRx(port, 1, 84)) == (640, COMM_SUCCESS, 0)
         reader = GroupSyncRead(port, sdk, 132, 4)
         for servo_id in range(1, 7):
             reader.addParam(servo_id)
-        assert reader.txRxPacket() == COMM_SUCCESS
+        assert answered(reader.txRxPacket) == COMM_SUCCESS
         assert reader.getData(4, 132, 4) == pytest.approx(2714, abs=3)
         port.setBaudRate(1_000_000)
         assert sdk.ping(port, 1)[1] != COMM_SUCCESS
