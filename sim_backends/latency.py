@@ -1,8 +1,8 @@
 """How long commands and samples take on a robot's wires: arithmetic from its description.
 
 The MuJoCo backend has no bytes; it delays what it sends and what it reads by these figures, so
-that it and the dry run agree. The virtual robot does not use them: there the bytes themselves
-take their time.
+that it and the dry run agree. The virtual robot uses only the time of bytes on a wire: there the
+bytes themselves take their time.
 """
 
 from hil.description import Board, Bus, RobotDescription
@@ -19,6 +19,11 @@ _FRAME_BYTES = {"foot": 30, "imu": 34}
 """Bytes of a board's frame: 12 around the payload of 18 or 22."""
 
 
+def wire_time_ns(size: int, baud: int) -> int:
+    """Time of `size` bytes on the wire [ns]."""
+    return size * BITS_PER_BYTE * 1_000_000_000 // baud
+
+
 def read_time_ns(description: RobotDescription) -> int:
     """From the start of a tick until the host has the answers of all servos [ns].
 
@@ -29,7 +34,7 @@ def read_time_ns(description: RobotDescription) -> int:
     for bus, n in _buses(description):
         reply = 8 + n * (4 + READ_BLOCK)
         full_chunks = reply - reply % USB_CHUNK
-        wire = (14 + n + full_chunks) * BITS_PER_BYTE * 1_000_000_000 // bus.baud
+        wire = wire_time_ns(14 + n + full_chunks, bus.baud)
         slowest = max(slowest, wire + bus.latency_timer_ms * 1_000_000)
     return slowest + 2 * _usb_ns(description)
 
@@ -42,7 +47,7 @@ def command_latency_ns(description: RobotDescription) -> int:
     slowest = 0
     for bus, n in _buses(description):
         size = 14 + n * (1 + WRITE_BLOCK)
-        slowest = max(slowest, size * BITS_PER_BYTE * 1_000_000_000 // bus.baud)
+        slowest = max(slowest, wire_time_ns(size, bus.baud))
     compute = 1000 * description.timing.compute_us
     return read_time_ns(description) + compute + _usb_ns(description) + slowest
 
@@ -53,7 +58,7 @@ def board_age_ns(description: RobotDescription, board: Board) -> int:
     The host takes what the boards sent when it has the answers of the servos. The mean over the
     phase between the board's rate and the ticks is half a board period.
     """
-    wire = BITS_PER_BYTE * _FRAME_BYTES[board.kind] * 1_000_000_000 // board.baud
+    wire = wire_time_ns(_FRAME_BYTES[board.kind], board.baud)
     wait = 500_000_000 // board.rate_hz + 500 * description.noise.board_jitter_us
     held = 1000 * description.noise.imu_delay_us if board.kind == "imu" else 0
     return max(0, held + wait + wire + _usb_ns(description) - read_time_ns(description))

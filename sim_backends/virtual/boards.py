@@ -14,7 +14,7 @@ from drivers.boards.frames import (
     encode_imu_frame,
 )
 from hil.description import Board, RobotDescription
-from sim_backends.latency import BITS_PER_BYTE
+from sim_backends.latency import wire_time_ns
 from sim_backends.plant import Plant
 from sim_backends.sensor_models import CellErrors, ImuErrors
 from sim_backends.virtual.clock import VirtualClock
@@ -77,7 +77,7 @@ class SensorBoard:
         device_us = int(now_ns * self._microseconds) + self._offset_us
         frame = self._make_frame(self._sequence, device_us)
         self._sequence += 1
-        wire_ns = len(frame) * BITS_PER_BYTE * 1_000_000_000 // self._baud
+        wire_ns = wire_time_ns(len(frame), self._baud)
         jitter_ns = int(self._random.random() * self._jitter_ns)
         arrival_ns = max(now_ns + self._hold_ns + wire_ns + jitter_ns, self._last_arrival_ns)
         self._last_arrival_ns = arrival_ns

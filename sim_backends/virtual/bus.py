@@ -5,7 +5,7 @@ from functools import partial
 
 from drivers.dynamixel.control_table import BAUD_CODES
 from drivers.dynamixel.protocol import Instruction, PacketReader
-from sim_backends.latency import BITS_PER_BYTE
+from sim_backends.latency import wire_time_ns
 from sim_backends.virtual.adapter import UsbAdapter
 from sim_backends.virtual.clock import VirtualClock
 from sim_backends.virtual.dispatch import Dispatcher, Reply
@@ -52,7 +52,7 @@ class ServoBus:
         goals = len(data) > _INSTRUCTION_BYTE and data[_INSTRUCTION_BYTE] in _GOAL_WRITES
         leave_ns = self._host.departure_ns(goals)
         begin_ns = max(leave_ns + self._adapter.transfer_ns(), self._host_until_ns)
-        end_ns = begin_ns + len(data) * BITS_PER_BYTE * 1_000_000_000 // baud
+        end_ns = begin_ns + wire_time_ns(len(data), baud)
         self._host_until_ns = end_ns
         self._clock.schedule(end_ns, partial(self._arrive, data, baud, begin_ns))
 
@@ -74,7 +74,7 @@ class ServoBus:
         segments = []
         for reply in replies:
             start_ns = end_ns + reply.gap_ns
-            end_ns = start_ns + len(reply.data) * BITS_PER_BYTE * 1_000_000_000 // self._baud
+            end_ns = start_ns + wire_time_ns(len(reply.data), self._baud)
             segments.append((start_ns, reply.data))
         if segments:
             self._servos_until_ns = end_ns
