@@ -34,6 +34,9 @@ __all__ = ["build", "measure_hot_path", "model_comparison", "serve_virtual"]
 
 def build(request: RunRequest) -> Session:
     """Everything a run needs, not open yet. Raises InputError for what does not fit together."""
+    if request.schedules.balls:
+        overrides = (*request.overrides, "plant.ball=true")
+        request = request.model_copy(update={"overrides": overrides})
     description = load_robot(request.robot, request.overrides)
     resolved = request.resolved(description)
     if resolved.backend == "mujoco":

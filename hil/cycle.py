@@ -85,6 +85,7 @@ class Cycle:
         time_s = tick / self.rate_hz
         started = stopwatch_ns()
         self._push(time_s)
+        self._throw(time_s)
         frame = session.backend.read()
         read = stopwatch_ns()
         estimate = session.estimator.update(frame)
@@ -116,6 +117,14 @@ class Cycle:
         if pushing or self._pushing:
             world.set_push(force)
         self._pushing = pushing
+
+    def _throw(self, time_s: float) -> None:
+        world = self._session.world
+        if world is None or not self._session.request.schedules.balls:
+            return
+        ball = self._operator.ball(time_s)
+        if ball is not None:
+            world.throw_ball(ball.mass, np.array(ball.velocity))
 
     def _hand_over(
         self,

@@ -109,6 +109,8 @@ class Plant(Config):
     """Reflected rotor inertia of every servo [kg·m²]; none keeps the MJCF's."""
     joint_friction: float | None = Field(default=None, ge=0)
     """Dry friction of every servo [N·m]; none keeps the MJCF's."""
+    ball: bool = False
+    """Whether there is a ball to throw; `--ball` adds it."""
     substeps: PositiveInt | None = None
     """Physics steps a tick; none takes the fewest that reach the clock's substep frequency."""
 
@@ -172,6 +174,8 @@ class RobotDescription(Config):
     actuation: Literal["servo", "torque"]
     root: str
     """MJCF body that carries the free joint."""
+    trunk: str | None = None
+    """MJCF body that thrown balls are aimed at; none for the root."""
     joints: tuple[Joint, ...] = Field(min_length=1)
     feet: dict[Literal["left", "right"], Foot]
     buses: dict[str, Bus] = {}

@@ -328,6 +328,10 @@ class World(Protocol):
         """Force at the centre of mass of the root body, world axes [N], until set again."""
         ...
 
+    def throw_ball(self, mass: float, velocity: Floats) -> None:
+        """Throw a ball [kg] at the trunk, to hit it at a world velocity [m/s], shape (3,)."""
+        ...
+
     def set_support(self, supported: bool) -> None:
         """Hold the root body where it is, as a hand would, or let it go."""
         ...

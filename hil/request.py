@@ -92,6 +92,8 @@ class RunRequest(Config):
             raise ValueError("--estimator truth needs a simulated robot; a real one has sensors")
         if self.bus == "real" and self.schedules.pushes:
             raise ValueError("--push needs a simulated robot")
+        if self.bus == "real" and self.schedules.balls:
+            raise ValueError("--ball needs a simulated robot")
         if self.priority is not None and self.lockstep:
             raise ValueError("--priority needs --realtime or --live: lockstep has no deadlines")
         return self

@@ -34,6 +34,17 @@ class Push(Config):
     """[s]"""
 
 
+class Ball(Config):
+    """A ball thrown at the trunk."""
+
+    mass: PositiveFloat
+    """[kg]"""
+    velocity: tuple[float, float, float]
+    """Of the impact, world axes [m/s]."""
+    start: NonNegativeFloat
+    """When it is thrown [s]; it hits about 0.1 s later."""
+
+
 class Schedules(Config):
     """Everything that changes during a run, as it was asked for."""
 
@@ -46,6 +57,7 @@ class Schedules(Config):
     step_width: float | None = Field(default=None, gt=0)
     """Lateral distance between the feet [m]; none for the robot's own."""
     pushes: tuple[Push, ...] = ()
+    balls: tuple[Ball, ...] = ()
 
 
 class Operator:
@@ -56,6 +68,7 @@ class Operator:
         self._lateral = _anchored(schedules.lateral, 0.0)
         self._turns = sorted(schedules.turns)
         self._pushes = schedules.pushes
+        self._balls = sorted(schedules.balls, key=lambda ball: ball.start)
         width = schedules.step_width
         self._reference = Reference(step_width=math.nan if width is None else width)
         self._force = np.zeros(3)
@@ -75,6 +88,12 @@ class Operator:
             if -ROUNDING_S <= time_s - push.start < push.duration - ROUNDING_S:
                 self._force += push.force
         return self._force
+
+    def ball(self, time_s: float) -> Ball | None:
+        """The next ball whose time has come; each is given once."""
+        if self._balls and self._balls[0].start <= time_s + ROUNDING_S:
+            return self._balls.pop(0)
+        return None
 
 
 def parse_point(option: str, text: str) -> Point:
@@ -96,6 +115,18 @@ def parse_push(option: str, text: str) -> Push:
     if start < 0 or duration <= 0:
         raise InputError(f"{option}: {text!r}: T must not be negative and DT must be above 0")
     return Push(force=(fx, fy, fz), start=start, duration=duration)
+
+
+def parse_ball(option: str, text: str) -> Ball:
+    """`KG,VX,VY,VZ@T`. Raises InputError."""
+    form = "KG,VX,VY,VZ@T (kilograms, metres a second, seconds)"
+    pattern = rf"{NUMBER},{NUMBER},{NUMBER},{NUMBER}@{NUMBER}"
+    mass, vx, vy, vz, start = _numbers(option, text, pattern, form)
+    if mass <= 0 or start < 0 or not (vx or vy or vz):
+        raise InputError(
+            f"{option}: {text!r}: KG must be above 0, T not negative and the velocity not zero"
+        )
+    return Ball(mass=mass, velocity=(vx, vy, vz), start=start)
 
 
 def _point(option: str, text: str, form: str, *, required_time: bool) -> Point:

@@ -7,6 +7,7 @@ from hil.clock import substeps_per_tick
 from hil.description import RobotDescription
 from hil.errors import InputError
 from hil.servo import MotorParameters
+from sim_backends.ball import add_ball
 
 SUPPORT = "support"
 """Weld between world and root body: the hand that holds the robot."""
@@ -39,6 +40,8 @@ def build_model(
     if motors is not None:
         _add_motors(spec, description, motors)
     _add_support(spec, description.root)
+    if description.plant.ball:
+        add_ball(spec)
     if description.imu is not None:
         spec.add_sensor(
             name=ACCELEROMETER,

@@ -11,6 +11,7 @@ from sim_backends.foot_loads import FootLoads
 from sim_backends.model import ACCELEROMETER, SUPPORT, build_model, foot_geoms, named, substeps
 from sim_backends.servo_figures import SERVO_KEYS
 from sim_backends.servo_physics import ServoPhysics
+from sim_backends.thrown_ball import ThrownBall
 
 DIVERGED_SPEED = 1e5
 """Norm of all velocities that no robot reaches [rad/s, m/s]."""
@@ -54,6 +55,9 @@ class Plant:
         self._loads = FootLoads(self.model, self.data, description)
         self._loads_index = 0
         self._corners, self._toes = [0.0] * 8, [0.0] * 2
+        self._ball: ThrownBall | None = None
+        if description.plant.ball:
+            self._ball = ThrownBall(self.model, self.data, description)
         self._set_start_pose(initial_velocity)
         n = len(description.joints)
         self._truth = Truth(0, *(np.zeros(k) for k in (3, 4, 3, 3, n, n, 3, 3, (2, 4), 2)))
@@ -234,6 +238,12 @@ class Plant:
     def set_push(self, force: Floats) -> None:
         """Force at the centre of mass of the root body, world axes [N], until set again."""
         self.data.xfrc_applied[self._root, :3] = force
+
+    def throw_ball(self, mass: float, velocity: Floats) -> None:
+        """Throw a ball at the trunk, to hit it at a world velocity [m/s]. Raises BackendError."""
+        if self._ball is None:
+            raise BackendError(f"{self.description.name}: no ball to throw: set plant.ball=true")
+        self._ball.throw(mass, velocity)
 
     def set_support(self, supported: bool) -> None:
         """Hold the root body where it is, or let it go."""

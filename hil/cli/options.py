@@ -42,6 +42,10 @@ Push = Annotated[
     list[str] | None,
     Option(metavar="FX,FY,FZ@T+DT", help="World force in N on the torso; repeatable."),
 ]
+Ball = Annotated[
+    list[str] | None,
+    Option(metavar="KG,VX,VY,VZ@T", help="Ball thrown at the trunk, m/s at impact; repeatable."),
+]
 Estimator = Annotated[EstimatorName | None, Option(help="Sensors only, or the simulation's truth.")]
 Pd = Annotated[PdName | None, Option(help="Integration of a torque robot's PD.")]
 Stabilizer = Annotated[

@@ -9,7 +9,7 @@ from typer import Exit
 from hil.cli import options
 from hil.cli.table import print_report
 from hil.request import RunRequest
-from hil.schedule import parse_point, parse_push, parse_turn
+from hil.schedule import parse_ball, parse_point, parse_push, parse_turn
 
 EPILOG = """[bold]Examples[/bold]
 
@@ -40,6 +40,7 @@ def walk(
     turn: options.Turn = None,
     step_width: options.StepWidth = None,
     push: options.Push = None,
+    ball: options.Ball = None,
     estimator: options.Estimator = None,
     pd: options.Pd = None,
     stabilizer: options.Stabilizer = None,
@@ -65,7 +66,7 @@ def walk(
         seed=seed,
         realtime=realtime,
         priority=priority,
-        schedules=_schedules(speed, lateral, turn, push) | {"step_width": step_width},
+        schedules=_schedules(speed, lateral, turn, push, ball) | {"step_width": step_width},
         estimator=estimator,
         pd=pd,
         stabilizer=stabilizer,
@@ -83,12 +84,14 @@ def _schedules(
     lateral: list[str] | None,
     turn: list[str] | None,
     push: list[str] | None,
+    ball: list[str] | None,
 ) -> dict[str, Any]:
     return {
         "speed": tuple(parse_point("--speed", text) for text in speed or ()),
         "lateral": tuple(parse_point("--lateral", text) for text in lateral or ()),
         "turns": tuple(parse_turn("--turn", text) for text in turn or ()),
         "pushes": tuple(parse_push("--push", text) for text in push or ()),
+        "balls": tuple(parse_ball("--ball", text) for text in ball or ()),
     }
 
 

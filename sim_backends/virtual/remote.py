@@ -130,6 +130,10 @@ class RemoteWorld:
             self._ask({"do": "push", "force": push})
             self._push = push
 
+    def throw_ball(self, mass: float, velocity: Floats) -> None:
+        """Throw a ball at the trunk, to hit it at a world velocity [m/s]."""
+        self._ask({"do": "ball", "mass": mass, "velocity": velocity.tolist()})
+
     def set_support(self, supported: bool) -> None:
         """Hold the root body where it is, or let it go."""
         self._ask({"do": "support", "supported": supported})

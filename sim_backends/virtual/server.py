@@ -22,6 +22,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from hil.description import RobotDescription
 from hil.errors import StrideError
 from hil.robot_files import load_robot
@@ -54,6 +56,7 @@ class VirtualRobotServer:
         self._folder = Path(tempfile.mkdtemp(prefix="stridebridge-"))
         self._truth = TruthBlock(self._folder / "truth", len(description.joints), create=True)
         handlers = {"hello": self._hello, "push": self._push, "support": self._support,
+                    "ball": self._ball,
                     "figures": self._figures, "quit": self._quit}  # fmt: skip
         self._control = ControlServer(self._folder / "control", handlers)
         self._lines = {name: PtyLine(device) for name, device in self._robot.devices.items()}
@@ -153,6 +156,11 @@ class VirtualRobotServer:
 
     def _push(self, request: Request) -> dict[str, Any]:
         self._plant.set_push(three_numbers(request["force"]))
+        return {}
+
+    def _ball(self, request: Request) -> dict[str, Any]:
+        mass = float(request["mass"])
+        self._plant.throw_ball(mass, np.array(three_numbers(request["velocity"])))
         return {}
 
     def _support(self, request: Request) -> dict[str, Any]:

@@ -135,6 +135,7 @@ class FakeWorld:
     def __init__(self, estimator):
         self.estimator = estimator
         self.pushes = []
+        self.balls = []
         self.support = []
         self.truth_now: Truth = topics(JOINTS, truth=True)["truth"]
         self.truth_now.base_position = np.array([0.0, 0.0, 0.25])
@@ -146,6 +147,9 @@ class FakeWorld:
 
     def set_push(self, force):
         self.pushes.append(tuple(force))
+
+    def throw_ball(self, mass, velocity):
+        self.balls.append((mass, tuple(velocity)))
 
     def set_support(self, supported):
         self.support.append(supported)

@@ -65,6 +65,7 @@ def test_the_operators_schedules_and_pushes_reach_controller_and_world():
             "speed": ((0.0, 0.1), (1.0, 0.3)),
             "turns": ((0.5, 1.0),),
             "pushes": ({"force": (0, 3, 0), "start": 0.2, "duration": 0.1},),
+            "balls": ({"mass": 0.2, "velocity": (0, 2, 0), "start": 0.4},),
         },
     )
     loop, _ = run(session)
@@ -73,6 +74,7 @@ def test_the_operators_schedules_and_pushes_reach_controller_and_world():
     assert np.allclose(speeds, 0.1 + 0.2 * np.arange(300) / 300)
     assert headings.tolist() == [0.0] * 150 + [1.0] * 150
     assert session.world.pushes == [(0, 3, 0)] * 30 + [(0, 0, 0)]
+    assert session.world.balls == [(0.2, (0, 2, 0))]
 
 
 def test_a_late_tick_skips_and_goes_on():

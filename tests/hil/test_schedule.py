@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hil.errors import InputError
-from hil.schedule import Operator, Schedules, parse_point, parse_push, parse_turn
+from hil.schedule import Operator, Schedules, parse_ball, parse_point, parse_push, parse_turn
 
 finite = st.floats(-1e6, 1e6, allow_nan=False)
 times = st.floats(0, 1e4, allow_nan=False)
@@ -81,3 +81,20 @@ def test_overlapping_pushes_add_up_and_end():
     operator = Operator(Schedules(pushes=pushes), 0.0)
     forces = [operator.push(time_s).tolist() for time_s in (0.9, 1.0, 1.6, 2.0, 2.5)]
     assert forces == [[0, 0, 0], [1, 0, 0], [1, 2, 0], [0, 2, 0], [0, 0, 0]]
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["5,1,2@3", "0,1,2,3@4", "5,0,0,0@1", "-1,1,0,0@1", "5,1,0,0@-1", "5,1,0,0", "5,nan,0,0@1"],
+)
+def test_bad_balls_are_refused(text):
+    with pytest.raises(InputError, match="--ball"):
+        parse_ball("--ball", text)
+
+
+def test_each_ball_is_thrown_once_and_in_time():
+    balls = (parse_ball("--ball", "1,2,0,0@2"), parse_ball("--ball", "5,0,-3,0@1"))
+    operator = Operator(Schedules(balls=balls), 0.0)
+    thrown = [operator.ball(time_s) for time_s in (0.9, 1.0, 1.1, 2.5, 3.0)]
+    assert [None if ball is None else ball.mass for ball in thrown] == [None, 5.0, None, 1.0, None]
+    assert thrown[1].velocity == (0.0, -3.0, 0.0)
