@@ -4,6 +4,7 @@ Run: `python benchmarks/driver_hot_path.py`
 """
 
 from drivers.dynamixel.hot_path_bench import measure_hot_path
+from drivers.dynamixel.silent_bench import measure_silent
 
 
 def main() -> None:
@@ -12,6 +13,12 @@ def main() -> None:
         print(
             f"{row.name:26s}{row.ours_us:7.1f} µs{row.sdk_classic_us:6.1f} µs"
             f"{row.sdk_fast_us:7.1f} µs{row.ratio:10.2f}"
+        )
+    print("\none of 12 servos falls silent: first cycle, its CPU, later cycles, heard in them")
+    for silent in measure_silent():
+        print(
+            f"{silent.name:26s}{silent.first_ms:7.2f} ms{silent.first_cpu_ms:6.2f} ms"
+            f"{silent.later_ms:7.2f} ms{silent.heard:7d}"
         )
 
 

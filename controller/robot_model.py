@@ -9,6 +9,7 @@ from typing import Protocol
 import mujoco
 import numpy as np
 
+from controller.selection import selection
 from hil.description import RobotDescription
 from hil.errors import DescriptionError
 from hil.interface import SIDES, Floats, Ints
@@ -64,6 +65,9 @@ class RobotModel:
         self._ankles = self._joint_ids([f.ankle for f in feet], "feet.*.ankle")
         self._knees = self._joint_ids([f"{side}_knee" for side in SIDES], "joints")
         self._hips = self._joint_ids([f"{side}_hip_pitch" for side in SIDES], "joints")
+        self._joint_range = selection(self.joint_ids)
+        self._joint_qpos = selection(self.qpos_addresses)
+        self._joint_qvel = selection(self.dof_addresses)
         self._view_data()
         self.gravity = float(-self.model.opt.gravity[2])
         """[m/s²]"""
@@ -89,7 +93,7 @@ class RobotModel:
         data, dof, qpos = self.data, self.base_dof, self._base_qpos
         self._base = (data.qpos[qpos : qpos + 3], data.qpos[qpos + 3 : qpos + 7])
         self._base_rates = (data.qvel[dof : dof + 3], data.qvel[dof + 3 : dof + 6])
-        self._qpos, self._qvel = data.qpos, data.qvel
+        self._qpos, self._qvel, self._axes = data.qpos, data.qvel, data.xaxis
         self.com: Floats = data.subtree_com[self.root_body]
         """Centre of mass of the whole body [m], shape (3,)."""
         self.com_velocity: Floats = data.subtree_linvel[self.root_body]
@@ -119,10 +123,10 @@ class RobotModel:
         """Place the model at a state and compute its kinematics."""
         position, orientation = self._base
         position[:], orientation[:] = state.base_position, state.base_orientation
-        self._qpos[self.qpos_addresses] = state.joint_position
+        self._qpos[self._joint_qpos] = state.joint_position
         linear, angular = self._base_rates
         linear[:], angular[:] = state.base_linear_velocity, state.base_angular_velocity
-        self._qvel[self.dof_addresses] = state.joint_velocity
+        self._qvel[self._joint_qvel] = state.joint_velocity
         self._kinematics()
 
     def _kinematics(self) -> None:
@@ -165,7 +169,7 @@ class RobotModel:
     @property
     def joint_axes(self) -> Floats:
         """World axes of the joints, in description order, shape (n, 3)."""
-        value: Floats = self.data.xaxis[self.joint_ids]
+        value: Floats = self._axes[self._joint_range]
         return value
 
     def leg_points(self) -> tuple[Floats, Floats, Floats]:

@@ -13,7 +13,7 @@ from drivers.calibration import RobotCalibration
 from drivers.dynamixel.audit import AuditResult, ExpectedServo, audit_bus
 from drivers.dynamixel.budget import BusBudget, BusTiming, bus_budget, wire_time_ns
 from drivers.dynamixel.client import ServoClient
-from drivers.dynamixel.control_table import VOLTAGE_UNIT, Register
+from drivers.dynamixel.control_table import VOLTAGE_UNIT, OperatingMode, Register
 from drivers.dynamixel.group_access import GroupAccess
 from drivers.dynamixel.port import Port
 from drivers.dynamixel.power import BusPower
@@ -22,6 +22,7 @@ from drivers.dynamixel.states import ServoStates
 from hil.description import RobotDescription
 from hil.errors import InputError
 from hil.interface import Clock
+from hil.servo import JOINT_MODES
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +92,12 @@ def open_bus(description: RobotDescription, clock: Clock, name: str, url: str) -
         (index, joint) for index, joint in enumerate(description.joints) if joint.bus == name
     ]
     servos = tuple(
-        ExpectedServo(joint.name, joint.id or 0, find_servo_model(joint.servo or ""))
+        ExpectedServo(
+            joint.name,
+            joint.id or 0,
+            find_servo_model(joint.servo or ""),
+            OperatingMode(JOINT_MODES[joint.mode]),
+        )
         for _, joint in members
     )
     port = Port(name, url, timing.baud)
@@ -115,13 +121,15 @@ def assemble_boards(
     tick_ns: int,
 ) -> BoardSensors:
     """The boards of a robot on their open ports."""
+    noise = description.noise
 
     def reader(board: str, kind: int) -> BoardReader:
         spec = description.boards[board]
         period_ns = 1_000_000_000 // spec.rate_hz
         wire_ns = wire_time_ns(FRAME_SIZE[kind], ports[board].baud)
         least_delay_ns = wire_ns + 1000 * (spec.delay_us + description.timing.usb_transfer_us)
-        return BoardReader(ports[board], least_delay_ns, period_ns, tick_ns)
+        noisy = noise.corner_force > 0 if kind == KIND_FOOT else noise.gyro > 0
+        return BoardReader(ports[board], least_delay_ns, period_ns, tick_ns, noisy)
 
     feet = {
         side: FootSensor(reader(foot.board, KIND_FOOT), FootConverter(calibration.feet[side]))

@@ -10,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 import yaml
-from pydantic import Field
+from pydantic import Field, PositiveFloat
 
 from drivers.boards.calibration import FootCalibration, ImuCalibration
 from hil.description import RobotDescription
@@ -33,8 +33,39 @@ class Provenance(Config):
     """Root mean square error of the load-cell fit [N]."""
 
 
+class ServoCalibration(Config):
+    """What `stride identify` found of one joint's servo, at the output shaft.
+
+    The driver uses the motor's constants and the divisor; the rest is for simulations and for
+    whoever wants to know. Every value has a standard deviation in `deviation`, by key.
+    """
+
+    torque_constant: PositiveFloat
+    """k_t = back-EMF constant [N·m/A = V·s/rad]."""
+    resistance: PositiveFloat
+    """[Ω]"""
+    gain_divisor: PositiveFloat
+    """Position P Gain register units per internal unit."""
+    armature: float = Field(ge=0)
+    """Reflected rotor inertia [kg·m²]."""
+    friction: float = Field(ge=0)
+    """Dry friction [N·m]."""
+    viscous: float = Field(ge=0)
+    """Friction per speed, without back-EMF [N·m·s/rad]."""
+    delay: float = Field(ge=0)
+    """From sending a goal to its effect [s]."""
+    backlash: float = Field(ge=0)
+    """Full gap [rad]."""
+    deviation: dict[str, float] = Field(default_factory=dict)
+    residual: float | None = None
+    """Root mean square of torque left over by the fit [N·m]."""
+    date: datetime.date
+    method: str
+    """Tests, and whether the servo was real or virtual."""
+
+
 class RobotCalibration(Config):
-    """Joint offsets, load cells and IMU mounting of one robot."""
+    """Joint offsets, servos, load cells and IMU mounting of one robot."""
 
     robot: str
     """Name in the robot description."""
@@ -42,6 +73,8 @@ class RobotCalibration(Config):
     joint_offsets: dict[str, float] = Field(default_factory=dict)
     """Servo-frame angle at which the joint is zero [rad], by joint; 0 for joints not named.
     q = direction·(counts − 2048)/COUNTS_PER_RADIAN − offset."""
+    servos: dict[str, ServoCalibration] = Field(default_factory=dict)
+    """Identified servos by joint; the data sheet's constants for joints not named."""
     feet: dict[Literal["left", "right"], FootCalibration] = Field(default_factory=dict)
     imu: ImuCalibration = ImuCalibration()
 
@@ -55,12 +88,13 @@ class RobotCalibration(Config):
             raise DescriptionError(
                 file, "robot", f"is for {self.robot!r}, the robot is {description.name!r}"
             )
-        strangers = sorted(set(self.joint_offsets) - set(description.joint_names))
-        if strangers:
-            valid = ", ".join(description.joint_names)
-            raise DescriptionError(
-                file, "joint_offsets", f"no joint {', '.join(strangers)}; valid: {valid}"
-            )
+        for key, named in (("joint_offsets", self.joint_offsets), ("servos", self.servos)):
+            strangers = sorted(set(named) - set(description.joint_names))
+            if strangers:
+                valid = ", ".join(description.joint_names)
+                raise DescriptionError(
+                    file, key, f"no joint {', '.join(strangers)}; valid: {valid}"
+                )
         for side, foot in description.feet.items():
             if foot.board is not None and side not in self.feet:
                 raise DescriptionError(file, f"feet.{side}", "is missing: the foot has load cells")

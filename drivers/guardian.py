@@ -33,13 +33,16 @@ class Guardian:
         if self._child is not None:
             return
         reading, writing = os.pipe()
+        # A signal between the fork and the child's own answer to it would end the child.
+        mask = signal.pthread_sigmask(signal.SIG_BLOCK, _IGNORED)
         child = os.fork()
         if child == 0:
             try:
                 os.close(writing)
-                self._watch(reading)
+                self._watch(reading, mask)
             finally:
                 os._exit(0)  # no clean-up of the maker's: it is the maker's
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
         os.close(reading)
         self._child, self._pipe = child, writing
 
@@ -65,10 +68,11 @@ class Guardian:
         os.close(self._pipe)
         self._child, self._pipe = None, -1
 
-    def _watch(self, reading: int) -> None:
+    def _watch(self, reading: int, mask: set[int | signal.Signals]) -> None:
         os.setsid()
         for number in _IGNORED:
             signal.signal(number, signal.SIG_IGN)
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
         select.select([reading], [], [])
         if os.read(reading, 1) != _DONE:
             self._off()

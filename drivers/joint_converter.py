@@ -6,6 +6,7 @@ from drivers.calibration import RobotCalibration
 from drivers.dynamixel.control_table import VELOCITY_UNIT
 from drivers.dynamixel.servo_models import ServoModel, find_servo_model
 from drivers.dynamixel.states import ServoStates
+from drivers.motor_constants import motor_parameters
 from hil.description import RobotDescription
 from hil.interface import NEVER_NS, SensorFrame
 from hil.servo import CENTRE_COUNTS, COUNTS_PER_RADIAN
@@ -23,10 +24,14 @@ class JointConverter:
 
     def __init__(self, description: RobotDescription, calibration: RobotCalibration) -> None:
         direction = np.array([float(joint.direction) for joint in description.joints])
+        motors = motor_parameters(description, calibration)
         models = [find_servo_model(joint.servo or "") for joint in description.joints]
         self._position_scale = direction / COUNTS_PER_RADIAN
         self._velocity_scale = direction * VELOCITY_UNIT
-        self._torque_scale = direction * [_torque_unit(model) for model in models]
+        self._torque_scale = direction * [
+            _torque_unit(model, float(constant))
+            for model, constant in zip(models, motors.torque_constant, strict=True)
+        ]
         self._zero = CENTRE_COUNTS * self._position_scale + calibration.offsets(
             description.joint_names
         )
@@ -47,8 +52,8 @@ class JointConverter:
             frame.joint_age_ns[states.time_ns < 0] = NEVER_NS
 
 
-def _torque_unit(model: ServoModel) -> float:
+def _torque_unit(model: ServoModel, torque_constant: float) -> float:
     """Torque of one count of Present Current or Present Load [N·m]."""
     if model.current_unit is None:
         return LOAD_UNIT * model.stall_torque
-    return model.current_unit * model.torque_constant
+    return model.current_unit * torque_constant

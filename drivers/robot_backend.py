@@ -13,14 +13,15 @@ from drivers.assembly import (
     port_url,
 )
 from drivers.boards.sensors import BoardSensors
+from drivers.bus_start import start_buses
+from drivers.bus_statistics import BusStatistics
 from drivers.calibration import RobotCalibration
 from drivers.command_check import require_sound
-from drivers.dynamixel.budget import wire_time_ns
-from drivers.dynamixel.bus import LEAST_MARGIN_NS, ServoBus
 from drivers.dynamixel.bus_group import BusGroup
+from drivers.dynamixel.control_table import OperatingMode
 from drivers.dynamixel.port import Port
-from drivers.dynamixel.read_plan import BusServo
 from drivers.dynamixel.states import ServoStates
+from drivers.guardian import Guardian
 from drivers.joint_converter import JointConverter
 from hil.description import RobotDescription
 from hil.errors import BackendError
@@ -56,14 +57,21 @@ class BusBackend:
         port_urls: Mapping[str, str],
         calibration: RobotCalibration,
         mapping: ServoMapping,
+        *,
+        guarded: bool = False,
     ) -> None:
+        """`guarded`: while torque is on, a second process waits for this one's end, to switch
+        torque off then. For real time only: a virtual clock has one process.
+        """
         self.clock = clock
         self.changes: list[str] = []
         """Servo settings that `open` corrected."""
         self._description = description
         self._rate_hz = rate_hz
-        self._port_urls = dict(port_urls)
-        self._calibration = calibration
+        self.port_urls = dict(port_urls)
+        """By the names of buses and boards."""
+        self.calibration = calibration
+        """Of this robot."""
         self._mapping = mapping
         n = len(description.joints)
         self._n = n
@@ -74,30 +82,32 @@ class BusBackend:
         self._ports: dict[str, Port] = {}
         self._group = BusGroup((), clock)
         self._boards = BoardSensors({}, None)
+        self._guardian = Guardian(self._switch_off) if guarded else None
         self._goals: ServoGoals | None = None
         self._armed = False
         self._powered = False
-        self._opened_ns = 0
-        self._traffic: dict[str, int] = {}
-        self._ticks = 0
-        self._saturated = np.zeros(n, dtype=np.int64)
-        self._hottest = np.full(n, np.nan)
-        self._lowest_voltage = np.full(n, np.nan)
+        self._compute_ns = 1000 * description.timing.compute_us
+        self._read_ns = 0
+        self._statistics = BusStatistics(n)
+
+    @property
+    def goals(self) -> ServoGoals | None:
+        """Registers of the last write; none before `arm`."""
+        return self._goals
 
     def open(self) -> None:
         """Connect and check; torque stays as it is found. Raises BackendError or InputError."""
         description = self._description
         for budget in bus_budgets(description):
             budget.check(self._rate_hz)
-        self._calibration.check_against(description)
+        self.calibration.check_against(description)
         try:
             self._open_ports()
-            self._audit()
+            self._start()
         except BaseException:
             self._close_ports()
             raise
-        self._opened_ns = self.clock.now_ns()
-        self._traffic = {part.name: self._bytes_of(part.port) for part in self._parts}
+        self._statistics.begin(self._group.buses, self.clock.now_ns())
 
     def read(self) -> SensorFrame:
         """The frame of this tick, reused by the next call. Raises BackendError."""
@@ -107,10 +117,10 @@ class BusBackend:
         self._states.valid[:] = False
         self._group.send_reads()
         self._group.receive()
-        self._boards.read(self.clock.now_ns(), frame)
+        self._read_ns = self.clock.now_ns()
+        self._boards.read(self._read_ns, frame)
         self._converter.convert(self._states, frame)
-        np.fmax(self._hottest, frame.joint_temperature, out=self._hottest)
-        np.fmin(self._lowest_voltage, frame.joint_voltage, out=self._lowest_voltage)
+        self._statistics.take_frame(frame)
         return frame
 
     def arm(self) -> None:
@@ -123,7 +133,9 @@ class BusBackend:
                 ids = [servo.id for servo in part.servos]
                 positions = _by_id(ids, goals.position[list(part.joints)])
                 p_gains = _by_id(ids, goals.p_gain[list(part.joints)])
-                part.power.prepare(positions, p_gains)
+                part.power.prepare(positions, p_gains, self._currents(part, goals))
+            if self._guardian is not None:
+                self._guardian.start()
             for part in self._parts:
                 part.power.on()
             for part in self._parts:
@@ -132,8 +144,7 @@ class BusBackend:
         except BaseException:
             self.stop(StopMode.TORQUE_OFF)
             raise
-        for bus in self._group.buses:
-            bus.forget_written()
+        self._group.arm(True)
         self._goals = goals
         self._armed = True
 
@@ -141,28 +152,33 @@ class BusBackend:
         """Send a command; raises InvalidCommandError and sends nothing if it is not sound."""
         require_sound(command, self._description.joint_names)
         goals, applied = self._mapping.map(command, self._frame)
+        spare_ns = self._spare_ns()
         if not self._armed:
+            self._group.write(None, spare_ns)
             applied.limit |= int(Limit.HELD)
             return applied
-        self._group.write(goals)
+        self._group.write(goals, spare_ns)
         self._goals = goals
-        self._ticks += 1
-        self._saturated += (applied.limit & int(Limit.SATURATION)) != 0
+        self._statistics.take_command(applied)
         return applied
 
     def stop(self, mode: StopMode) -> bool:
         """End motion; True when the result was read back."""
         self._armed = False
+        self._group.arm(False)
         if mode is StopMode.TORQUE_OFF:
-            # Every bus gets its frames before any is waited for.
-            for part in self._parts:
-                with suppress(BackendError):
-                    part.power.send_off()
+            self._send_off()
         verified = [self._stop_bus(part, mode) for part in self._parts]
         done = bool(verified) and all(verified)
         if mode is StopMode.TORQUE_OFF and done:
             self._powered = False
+            if self._guardian is not None:
+                self._guardian.close()
         return done
+
+    def guardian_lost(self) -> bool:
+        """Whether torque is on and the guardian that should watch over it is gone."""
+        return self._powered and self._guardian is not None and not self._guardian.alive()
 
     def close(self) -> None:
         """Torque off if `arm` switched it on, then release the ports. Safe to call twice."""
@@ -174,17 +190,29 @@ class BusBackend:
 
     def statistics(self) -> dict[str, float | None]:
         """Counters for the report."""
-        counters = [bus.counters for bus in self._group.buses]
-        saturated_pct = 100 * self._saturated.max() / self._ticks if self._ticks else np.nan
-        return {
-            "bus_utilisation_pct": self._utilisation_pct(),
-            "bus_crc_errors": float(sum(counter.crc_errors for counter in counters)),
-            "bus_timeouts": float(sum(counter.timeouts for counter in counters)),
-            "bus_stale_frames": float(sum(counter.stale for counter in counters)),
-            "temperature_max_c": _known(np.fmax.reduce(self._hottest)),
-            "voltage_min_v": _known(np.fmin.reduce(self._lowest_voltage)),
-            "duty_saturation_pct_max": _known(saturated_pct),
-        }
+        return self._statistics.report()
+
+    def _send_off(self) -> None:
+        """Every bus gets its frames before any is waited for."""
+        for part in self._parts:
+            with suppress(BackendError):
+                part.power.send_off()
+
+    def _switch_off(self) -> None:
+        """What the guardian does in its own process, on the same open ports."""
+        self._send_off()
+        for part in self._parts:
+            with suppress(BackendError):
+                part.power.off()
+
+    def _spare_ns(self) -> int:
+        """Time from when the goals leave to the next tick [ns].
+
+        On a virtual clock computing takes no time, and a virtual host lets the goals go when it
+        should be done.
+        """
+        leave_ns = max(self.clock.now_ns(), self._read_ns + self._compute_ns)
+        return self._frame.time_ns + 1_000_000_000 // self._rate_hz - leave_ns
 
     def _require_open(self) -> None:
         if not self._parts:
@@ -193,41 +221,22 @@ class BusBackend:
     def _open_ports(self) -> None:
         description = self._description
         for name in description.buses:
-            url = port_url(self._port_urls, name)
+            url = port_url(self.port_urls, name)
             part = open_bus(description, self.clock, name, url)
             self._ports[name] = part.port
             self._parts.append(part)
         for name, board in description.boards.items():
-            self._ports[name] = Port(name, port_url(self._port_urls, name), board.baud)
+            self._ports[name] = Port(name, port_url(self.port_urls, name), board.baud)
         tick_ns = 1_000_000_000 // self._rate_hz
-        self._boards = assemble_boards(description, self._calibration, self._ports, tick_ns)
+        self._boards = assemble_boards(description, self.calibration, self._ports, tick_ns)
 
-    def _audit(self) -> None:
+    def _start(self) -> None:
         """Check the servos, then set up the hot path for what they can do."""
-        results = {part.name: part.audit() for part in self._parts}
-        problems = [problem for result in results.values() for problem in result.problems]
-        if problems:
-            raise BackendError("; ".join(problems))
-        self.changes = [change for result in results.values() for change in result.changes]
-        fast = {name: result.fast_reads for name, result in results.items()}
-        margins = {}
-        for budget in bus_budgets(self._description, fast):
-            budget.check(self._rate_hz)
-            margins[budget.bus] = max(LEAST_MARGIN_NS, budget.slack_ns(self._rate_hz))
-        buses = []
-        for part in self._parts:
-            part.read_slow(self._states)
-            servos = [
-                BusServo(servo.id, joint)
-                for servo, joint in zip(part.servos, part.joints, strict=True)
-            ]
-            name = part.name
-            buses.append(
-                ServoBus(
-                    name, part.port, part.timing, servos, self._states, fast[name], margins[name]
-                )
-            )
-        self._group = BusGroup(buses, self.clock)
+        started = start_buses(
+            self._description, self._parts, self._states, self.clock, self._rate_hz
+        )
+        self.changes = started.changes
+        self._group = started.group
 
     def _present_goals(self) -> ServoGoals:
         """Goals at the present positions with the robot's default gains."""
@@ -262,9 +271,19 @@ class BusBackend:
             if self._goals is None:
                 return False
             ids = [servo.id for servo in part.servos]
-            return part.power.hold(_by_id(ids, self._goals.position[list(part.joints)]))
+            positions = _by_id(ids, self._goals.position[list(part.joints)])
+            return part.power.hold(positions, self._currents(part, self._goals))
         except BackendError:
             return False
+
+    def _currents(self, part: BusParts, goals: ServoGoals) -> dict[int, int] | None:
+        """Goal Currents of servos that are to rest: limits stay, goals are none."""
+        if goals.current is None:
+            return None
+        return {
+            servo.id: 0 if servo.mode is OperatingMode.CURRENT else int(goals.current[joint])
+            for servo, joint in zip(part.servos, part.joints, strict=True)
+        }
 
     def _close_ports(self) -> None:
         for port in self._ports.values():
@@ -273,24 +292,6 @@ class BusBackend:
         self._parts.clear()
         self._armed = False
 
-    def _bytes_of(self, port: Port) -> int:
-        return port.sent_bytes + port.received_bytes
-
-    def _utilisation_pct(self) -> float | None:
-        """Share of time from `open` to the last tick in which the busiest bus carried bytes."""
-        elapsed_ns = self._frame.time_ns - self._opened_ns
-        if not self._group.buses or elapsed_ns <= 0:
-            return None
-        busy_ns = max(
-            wire_time_ns(self._bytes_of(bus.port) - self._traffic[bus.name], bus.port.baud)
-            for bus in self._group.buses
-        )
-        return 100 * busy_ns / elapsed_ns
-
 
 def _by_id(ids: list[int], values: np.ndarray) -> dict[int, int]:
     return dict(zip(ids, values.tolist(), strict=True))
-
-
-def _known(value: float) -> float | None:
-    return float(value) if np.isfinite(value) else None

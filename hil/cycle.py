@@ -6,6 +6,7 @@ from typing import Protocol
 
 import numpy as np
 
+from hil.errors import InvalidCommandError
 from hil.interface import (
     AppliedCommand,
     Estimate,
@@ -16,12 +17,28 @@ from hil.interface import (
     WalkStatus,
 )
 from hil.limits import JointLimits
-from hil.safety import Fault, Supervisor
+from hil.robot_facts import robot_facts
+from hil.safety.assembly import make_supervisor
+from hil.safety.decision import Action
+from hil.safety.monitor import Situation
+from hil.safety.severity import Event, Severity
+from hil.safety.way_out import WayDown
 from hil.schedule import Operator
 from hil.session import Session
 from hil.timing import TickSchedule, TickTiming, stopwatch_ns
 
+NO_TICK = -(1 << 60)
 CommandSource = Callable[[Estimate, Reference], JointCommand]
+
+
+@dataclass(slots=True)
+class SafetyStatus:
+    """What the supervisor decided in a tick, for recordings."""
+
+    severity: int = 0
+    """Latched `Severity`."""
+    walking: bool = False
+    """From T = 0 until the way down begins."""
 
 
 @dataclass(slots=True)
@@ -39,6 +56,7 @@ class TickRecord:
     estimate: Estimate
     reference: Reference
     status: WalkStatus
+    safety: SafetyStatus
     truth: Truth | None
     timing: TickTiming
 
@@ -57,27 +75,36 @@ class Cycle:
     def __init__(self, session: Session, rate_hz: int, sinks: tuple[Sink, ...]) -> None:
         description, n = session.description, len(session.description.joints)
         self.rate_hz = rate_hz
-        self.supervisor = Supervisor(description)
+        weight_n = robot_facts(description).weight if description.actuation == "servo" else 0.0
+        paced = not session.request.lockstep
+        self.supervisor = make_supervisor(description, rate_hz, weight_n, paced=paced)
+        self.error: Exception | None = None
+        """What the command source raised first; the robot sits down before it comes out."""
         self.schedule = TickSchedule(session.backend.clock, rate_hz)
         self._session = session
         self._sinks = sinks
         self._operator = Operator(session.request.schedules, description.defaults.speed)
         self._limits = JointLimits(description)
+        self._way_down = WayDown(description, rate_hz)
         self._pushing = False
         self._timing = TickTiming()
         self._truth: Truth | None = None
         self._hand_over_ns = 0
         self._command, self._applied = JointCommand.zeros(n), AppliedCommand.zeros(n)
+        self._rejected = NO_TICK
+        self._situation: Situation | None = None
+        self._safety = SafetyStatus()
 
     def begin(self, first_tick: int) -> None:
         """The next tick is this one, now."""
         self.schedule = TickSchedule(self._session.backend.clock, self.rate_hz, first_tick)
 
-    def tick(self, source: CommandSource) -> Fault | None:
-        """One tick with commands from a source; the fault that forbids the next one, or none.
+    def tick(self, source: CommandSource) -> Action:
+        """One tick with commands from a source, as long as the supervisor lets it run.
 
-        The judge sees the truth of the end of the tick before: a simulated world in another
-        process is asked after the write, where nobody waits for it.
+        After OFF, nothing was sent and no tick may follow. The supervisor sees the truth of the
+        end of the tick before: a simulated world in another process is asked after the write,
+        where nobody waits for it.
         """
         session, timing = self._session, self._timing
         timing.tick = tick = self.schedule.wait()
@@ -89,24 +116,70 @@ class Cycle:
         frame = session.backend.read()
         read = stopwatch_ns()
         estimate = session.estimator.update(frame)
-        estimated = controlled = stopwatch_ns()
+        estimated = stopwatch_ns()
         reference = self._operator.reference(time_s)
-        fault = self.supervisor.judge(time_s, frame, self._truth or estimate)
-        if fault is None:
-            self._command = source(estimate, reference)
-            controlled = stopwatch_ns()
-            self._applied = session.backend.write(self._limits.apply(self._command))
+        action = self.supervisor.judge(self._seen(frame, estimate), time_s)
+        judged = stopwatch_ns()
+        timing.control_ns = 0
+        if action is not Action.OFF:
+            limited = self._command_of(action, source, estimate, reference)
+            self._applied = session.backend.write(limited)
             self._applied.limit |= self._limits.flags
-        written = stopwatch_ns()
         timing.read_ns, timing.estimate_ns = read - started, estimated - read
-        timing.control_ns, timing.write_ns = controlled - estimated, written - controlled
+        timing.safety_ns = judged - estimated
+        timing.write_ns = stopwatch_ns() - judged - timing.control_ns
+        self._safety.severity = int(self.supervisor.state.severity)
         self._hand_over(time_s, frame, estimate, reference, started)
         self.schedule.finish()
-        return fault
+        return action
 
-    def base_height(self, estimate: Estimate) -> float:
-        """Height of the root body [m], from the truth where it is known."""
-        return float((self._truth or estimate).base_position[2])
+    def begin_walking(self, estimate: Estimate) -> None:
+        """T = 0: the body stands as high as it should."""
+        self.supervisor.begin_walking(float((self._truth or estimate).base_position[2]))
+        self._safety.walking = True
+
+    def _seen(self, frame: SensorFrame, estimate: Estimate) -> Situation:
+        motion = self._truth or estimate
+        situation = self._situation
+        if situation is None:
+            situation = self._situation = Situation(0, frame, motion, self._applied)
+        situation.now_ns = frame.time_ns
+        situation.frame, situation.motion = frame, motion
+        situation.applied = self._applied
+        situation.walking = self._safety.walking
+        return situation
+
+    def _command_of(
+        self, action: Action, source: CommandSource, estimate: Estimate, reference: Reference
+    ) -> JointCommand:
+        """The command of this tick, inside the limits.
+
+        A source that raises, or whose command is not sound, is not asked for another way: the
+        last sound command goes out again, and the supervisor hears of it before the next tick.
+        """
+        limits = self._limits
+        if action is not Action.RUN:
+            self._safety.walking = False
+            self._command = self._way_down.command(action, limits.last)
+            return limits.apply(self._command)
+        asked = stopwatch_ns()
+        try:
+            self._command = source(estimate, reference)
+            self._timing.control_ns = stopwatch_ns() - asked
+            return limits.apply(self._command)
+        except Exception as error:  # whatever it is, the robot sits down first
+            self._note(error)
+        return limits.last
+
+    def _note(self, error: Exception) -> None:
+        """One command that is not sound is passed over; anything else ends the run."""
+        severity = Severity.SOFT_STOP
+        if isinstance(error, InvalidCommandError) and self._rejected < self.schedule.tick - 1:
+            severity = Severity.WARN
+        else:
+            self.error = self.error or error
+        self._rejected = self.schedule.tick
+        self.supervisor.note(Event("program", type(error).__name__, severity))
 
     def _push(self, time_s: float) -> None:
         world = self._session.world
@@ -148,6 +221,7 @@ class Cycle:
             estimate,
             reference,
             session.controller.status,
+            self._safety,
             self._truth,
             timing,
         )

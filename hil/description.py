@@ -12,6 +12,7 @@ from typing import Any, Literal, Self
 from pydantic import Field, PositiveFloat, PositiveInt, model_validator
 
 from hil.interface import SIDES
+from hil.twin import Noise, Plant, Supply
 from hil.validation import Config
 
 Vector3 = tuple[float, float, float]
@@ -33,6 +34,8 @@ class Joint(Config):
     id: int | None = Field(default=None, ge=0, le=252)
     direction: Literal[-1, 1] = 1
     """Sign of the servo's position against the joint's."""
+    mode: Literal["position", "current_position", "current"] = "position"
+    """How the servo makes torque: by duty, by current from the position error, by current."""
     stiffness: float = Field(default=0.0, ge=0)
     """Default kp [N·m/rad]."""
     damping: float = Field(default=0.0, ge=0)
@@ -81,15 +84,6 @@ class Imu(Config):
     """MJCF site whose frame is the sensor's."""
 
 
-class Supply(Config):
-    """The servo supply."""
-
-    voltage: PositiveFloat
-    """Open-circuit voltage [V]."""
-    resistance: float = Field(ge=0)
-    """Pack and wiring, shared by all servos [Ω]."""
-
-
 class Timing(Config):
     """Fixed delays of the robot's computer and adapters; never measured in a dry run."""
 
@@ -97,47 +91,6 @@ class Timing(Config):
     """From the last byte read to the first byte written."""
     usb_transfer_us: PositiveInt
     """One USB transfer, each way."""
-
-
-class Plant(Config):
-    """How the simulated twin differs from the nominal model."""
-
-    floor_friction: PositiveFloat
-    mass_scale: PositiveFloat = 1.0
-    """Factor on the mass and inertia of the root body."""
-    armature: float | None = Field(default=None, ge=0)
-    """Reflected rotor inertia of every servo [kg·m²]; none keeps the MJCF's."""
-    joint_friction: float | None = Field(default=None, ge=0)
-    """Dry friction of every servo [N·m]; none keeps the MJCF's."""
-    ball: bool = False
-    """Whether there is a ball to throw; `--ball` adds it."""
-    substeps: PositiveInt | None = None
-    """Physics steps a tick; none takes the fewest that reach the clock's substep frequency."""
-
-
-class Noise(Config):
-    """Standard deviations of what a seed draws. Zero is an ideal sensor."""
-
-    attitude: float = Field(ge=0)
-    """White noise of the IMU orientation [rad]."""
-    attitude_bias: float = Field(ge=0)
-    """Constant roll and pitch error of a run [rad]."""
-    gyro: float = Field(ge=0)
-    """White noise [rad/s]."""
-    gyro_bias: float = Field(ge=0)
-    """Constant error of a run [rad/s]."""
-    accelerometer: float = Field(ge=0)
-    """White noise [m/s²]."""
-    corner_force: float = Field(ge=0)
-    """White noise of one load cell [N]."""
-    corner_zero: float = Field(ge=0)
-    """Constant zero error of one load cell, after calibration [N]."""
-    imu_delay_us: int = Field(ge=0)
-    """Age of an IMU sample when its frame is sent."""
-    board_jitter_us: int = Field(ge=0)
-    """Random extra delay of a board frame, uniform from 0 to this."""
-    usb_jitter_us: int = Field(ge=0)
-    """Random extra delay of a USB transfer, uniform from 0 to this."""
 
 
 class Start(Config):
@@ -151,6 +104,26 @@ class Start(Config):
     """Initial coronal velocity when moving [m/s]."""
     speed_limit: PositiveFloat | None = None
     """Largest initial sagittal speed when moving [m/s]; a faster walk is sped up to."""
+
+
+class Sit(Config):
+    """Pose in which the robot rests on bent legs, and from which torque goes off."""
+
+    joints: dict[str, float]
+    """[rad], by joint name; joints that are not named go to 0."""
+    time: PositiveFloat
+    """Time of the way down [s]."""
+
+
+class Safety(Config):
+    """Limits of the safety chain."""
+
+    temperature_limit: PositiveFloat = 80.0
+    """At which the servos shut themselves down [°C] (Temperature Limit, X-series e-manual)."""
+    voltage_min: PositiveFloat | None = None
+    """Least supply at the servos [V]; none is not watched."""
+    voltage_patience: PositiveFloat = 0.1
+    """How long it may be below that [s]: a step's impact is shorter."""
 
 
 class Defaults(Config):
@@ -188,6 +161,8 @@ class RobotDescription(Config):
     calibration: str | None = None
     """Calibration file of one real robot, relative to the description."""
     start: Start
+    sit: Sit | None = None
+    safety: Safety = Safety()
     defaults: Defaults
     walking: dict[str, Any]
     file: str
@@ -218,12 +193,14 @@ class RobotDescription(Config):
             raise ValueError(f"feet must be {' and '.join(SIDES)}")
         for joint in self.joints:
             self._check_joint(joint)
-        strangers = sorted(set(self.start.joints) - set(names))
-        if strangers:
-            raise ValueError(
-                f"start.joints names no joint of this robot: {', '.join(strangers)}; "
-                f"valid: {', '.join(names)}"
-            )
+        sit = {} if self.sit is None else self.sit.joints
+        for key, pose in (("start", self.start.joints), ("sit", sit)):
+            strangers = sorted(set(pose) - set(names))
+            if strangers:
+                raise ValueError(
+                    f"{key}.joints names no joint of this robot: {', '.join(strangers)}; "
+                    f"valid: {', '.join(names)}"
+                )
         for side, foot in self.feet.items():
             if foot.board is not None and foot.board not in self.boards:
                 raise ValueError(

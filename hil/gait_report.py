@@ -12,6 +12,10 @@ LOADED_STANCE = 0.145
 000_bd1305a0ae731442)."""
 SIDE_SHARE = 0.15
 """Share of a foot's load below which a side is in disequilibrium (same seed)."""
+FLAT_CORNER = 0.0145
+"""Share of the weight that makes a corner loaded (10 N of 70.4 kg, same seed)."""
+MID_STANCE = (0.060, 0.9)
+"""Mid-stance begins so long after a step began [s] and ends at this phase."""
 NANOSECONDS_PER_MS = 1e6
 
 
@@ -76,6 +80,23 @@ def disequilibrium_ticks(trace: Trace, weight_n: float) -> tuple[Bools, Bools]:
         _share(rear_left + rear_right, sole + toe),
     )
     return counted, np.min(sides, axis=0) < SIDE_SHARE
+
+
+def flat_mid_stance(trace: Trace, weight_n: float) -> float | None:
+    """Share of mid-stance ticks in which three corners of the stance foot are loaded [%].
+
+    Counted from when mean speeds are; None without such ticks.
+    """
+    if len(trace) < 2:
+        return None
+    began = np.maximum.accumulate(
+        np.where(np.diff(trace.steps, prepend=trace.steps[0]) != 0, trace.time_s, trace.time_s[0])
+    )
+    counted = trace.walking & (trace.phase < MID_STANCE[1])
+    counted &= (trace.time_s - began > MID_STANCE[0]) & (trace.time_s >= measured_from(trace))
+    corners = trace.foot_force[np.arange(len(trace)), trace.stance][counted]
+    flat = np.count_nonzero(corners > FLAT_CORNER * weight_n, axis=1) >= 3
+    return float(100.0 * flat.mean()) if len(flat) else None
 
 
 def percentiles_ms(name: str, durations_ns: np.ndarray) -> dict[str, float | None]:

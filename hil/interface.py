@@ -44,6 +44,19 @@ class Limit(IntFlag):
     """Not sent: the last goal stands."""
 
 
+class JointError(IntFlag):
+    """What `SensorFrame.joint_error` says beyond the actuator's own error bits (below 0x80)."""
+
+    UNEXPLAINED = 0x80
+    """The actuator alerts, and why is not read yet."""
+    REBOOTED = 0x100
+    """Its clock began anew: it started again, with torque off and its gains lost."""
+    TORQUE_LOST = 0x200
+    """Torque is off although it was switched on."""
+    STOPPED = 0x400
+    """Its watchdog tripped: it holds where it is and takes no goals."""
+
+
 class StopMode(Enum):
     """How `Backend.stop` ends motion."""
 
@@ -128,7 +141,7 @@ class SensorFrame:
     joint_voltage: Floats
     """Supply at the servo [V], shape (n,); NaN where unknown."""
     joint_error: Ints
-    """Hardware error flags of the actuator, 0 = none, shape (n,)."""
+    """Hardware error flags of the actuator and `JointError`, 0 = none, shape (n,)."""
     joint_age_ns: Ints
     """Shape (n,)."""
     joint_valid: Bools

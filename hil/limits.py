@@ -37,6 +37,9 @@ class JointLimits:
         self._changed = np.zeros((5, n), dtype=np.bool_)
         self._flat = self._asked.ravel()
         self._out = JointCommand(*self._clamped)
+        self._sound = np.zeros((5, n))
+        self.last = JointCommand(*self._sound)
+        """The last command that was sound, inside the limits; zeros before the first one."""
         self.flags: Ints = np.zeros(n, dtype=np.int64)
         """`Limit` flags that the last `apply` raised, shape (n,)."""
 
@@ -53,11 +56,13 @@ class JointLimits:
         np.not_equal(clamped, asked, out=changed)
         if not np.count_nonzero(changed):
             self.flags[:] = 0
+            self._sound[:] = clamped
             return self._out
         if not np.isfinite(asked).all():  # what is not finite is never inside the limits
             raise InvalidCommandError(self._complaint())
         changed[0] &= asked[2] > 0.0
         np.dot(FLAGS, changed, out=self.flags)
+        self._sound[:] = clamped
         return self._out
 
     def _complaint(self) -> str:

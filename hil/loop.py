@@ -9,7 +9,8 @@ from dataclasses import dataclass, field
 from hil.cycle import Cycle, Sink
 from hil.errors import StrideError
 from hil.interface import Estimate, JointCommand, Reference
-from hil.safety import Fault
+from hil.safety.decision import Action
+from hil.safety.severity import Event, Fault, Severity
 from hil.session import Session
 from hil.shutdown import stop_and_close
 from hil.signals import StopSignals
@@ -31,16 +32,18 @@ class Outcome:
 
     @property
     def fell(self) -> bool:
-        """Whether the body fell."""
-        return any(fault.name == "fell" for fault in self.faults)
+        """Whether the body fell, or was falling when the run ended."""
+        return any(fault.name in ("fell", "falling") for fault in self.faults)
 
 
 class Loop:
     """Runs one session whose backend is open, and closes the session."""
 
-    def __init__(self, session: Session, sinks: tuple[Sink, ...]) -> None:
+    def __init__(self, session: Session, sinks: tuple[Sink, ...], *, sits: bool = True) -> None:
+        """`sits`: sit down when the walk is over; a study may save the time."""
         self.outcome = Outcome()
-        self._session = session
+        self._session, self._sits = session, sits
+        self._told = self._at_rest = False
         self._signals = StopSignals()
         rate_hz = session.request.rate_hz or session.description.defaults.rate_hz
         self._cycle = Cycle(session, rate_hz, sinks)
@@ -51,7 +54,8 @@ class Loop:
             try:
                 self._run_to_the_end()
             except BaseException as error:
-                self._note(error)
+                if not self._at_rest:
+                    self._note(error)
                 self._make_safe_after(error)
                 raise
             with self._signals.shielded():
@@ -59,41 +63,69 @@ class Loop:
         return self.outcome
 
     def _run_to_the_end(self) -> None:
+        self.outcome.faults = self._cycle.supervisor.faults
         with real_time_priority(self._session.request.priority), quiet_garbage_collector():
-            fault = self._start()
-            if fault is None:
-                fault = self._walk()
-        if fault is not None:
-            self.outcome.faults.append(fault)
+            action = self._start()
+            if action is Action.RUN:
+                action = self._walk()
+            if action is not Action.OFF:
+                self._rest()
+        self._at_rest = True
+        if self._cycle.error is not None:
+            raise self._cycle.error
+        self._signals.check()
 
-    def _start(self) -> Fault | None:
+    def _start(self) -> Action:
         if self._session.description.start.moving:
             self._session.backend.arm()
             self._cycle.begin(0)
-            return None
-        return stand_up(self._session, self._cycle, self._signals.check)
+            return Action.RUN
+        return stand_up(self._session, self._cycle, self._signals.check, self._listen)
 
-    def _walk(self) -> Fault | None:
+    def _walk(self) -> Action:
         cycle, clock = self._cycle, self._session.backend.clock
         ticks = round(self._session.request.duration_s * cycle.rate_hz)
         clock_start, wall_start = clock.now_ns(), stopwatch_ns()
         missed_before = cycle.schedule.missed
         source = self._first_step
-        fault = None
+        action = Action.RUN
+        if self._session.begin_faults is not None:
+            self._session.begin_faults(cycle.schedule.time_ns(0))
         try:
-            while fault is None and cycle.schedule.next_tick < ticks:
-                fault = cycle.tick(source)
+            while action is Action.RUN and cycle.schedule.next_tick < ticks:
+                action = cycle.tick(source)
                 source = self._session.controller.step
-                self._signals.check()
+                self._listen()
         finally:
             self.outcome.clock_ns = clock.now_ns() - clock_start
             self.outcome.wall_ns = stopwatch_ns() - wall_start
             self.outcome.missed = cycle.schedule.missed - missed_before
-        return fault
+        return action
+
+    def _rest(self) -> None:
+        """The way down, if it has begun, or as the walk's own end."""
+        supervisor = self._cycle.supervisor
+        if supervisor.state.severity == Severity.OK:
+            if not self._sits:
+                return
+            supervisor.finish(self._session.backend.clock.now_ns())
+        while self._cycle.tick(self._session.controller.step) is not Action.OFF:
+            self._listen()
+
+    def _listen(self) -> None:
+        """Hand a stop signal or another problem to the supervisor: the robot sits down first."""
+        supervisor, watch = self._cycle.supervisor, self._session.watch
+        name = self._signals.first()
+        if name is not None and not self._told:
+            self._told = True
+            supervisor.note(Event("operator", name, Severity.SOFT_STOP))
+        problem = watch() if watch is not None else None
+        if problem is not None:
+            supervisor.note(Event("program", problem, Severity.SOFT_STOP))
 
     def _first_step(self, estimate: Estimate, reference: Reference) -> JointCommand:
         """The controller's first step, at which the body stands as high as it should."""
-        self._cycle.supervisor.begin_walking(self._cycle.base_height(estimate))
+        self._cycle.begin_walking(estimate)
         return self._session.controller.step(estimate, reference)
 
     def _note(self, error: BaseException) -> None:

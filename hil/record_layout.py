@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hil.cycle import TickRecord
+from hil.cycle import SafetyStatus, TickRecord
 from hil.interface import (
     AppliedCommand,
     Estimate,
@@ -48,6 +48,7 @@ def topics(n: int, *, truth: bool) -> dict[str, Any]:
         "estimate": _blank_estimate(n),
         "reference": Reference(),
         "status": WalkStatus(),
+        "safety": SafetyStatus(),
         "timing": TickTiming(),
     }
     if truth:

@@ -7,6 +7,7 @@ from typing import Any
 from hil.gait_report import gait_figures, percentiles_ms
 from hil.loop import Outcome
 from hil.request import RunRequest
+from hil.safety.severity import Fault
 from hil.trace import Trace
 
 SIGNIFICANT_DIGITS = 6
@@ -34,6 +35,7 @@ def make_report(
 ) -> dict[str, Any]:
     """The report of a run; `request` is resolved."""
     rate_hz = request.rate_hz or 0
+    duration_s = len(trace) / rate_hz
     iterations, limited = trace.stabilizer_iterations, trace.stabilizer_limited
     use = request.stabilizer and len(trace) > 0
     figures = {
@@ -42,7 +44,7 @@ def make_report(
         "bus": request.bus,
         "rate_hz": rate_hz,
         "seed": request.seed,
-        "duration_s": len(trace) / rate_hz,
+        "duration_s": duration_s,
         "pd": request.pd,
         "stabilizer": request.stabilizer,
         "ankle_limit": request.ankle_limit,
@@ -57,9 +59,18 @@ def make_report(
         "stabilizer_limit_pct": float(100.0 * limited.mean()) if use else None,
         **{key: _count(statistics.get(key)) for key in COUNTER_KEYS},
         **{key: _finite(statistics.get(key)) for key in FIGURE_KEYS},
-        "faults": [asdict(fault) for fault in outcome.faults],
+        "faults": [asdict(fault) for fault in (*injected(request, duration_s), *outcome.faults)],
     }
     return {key: _rounded(value) for key, value in figures.items()}
+
+
+def injected(request: RunRequest, duration_s: float) -> list[Fault]:
+    """The faults that a virtual robot was given on purpose; the reactions are listed apart."""
+    return [
+        Fault(fault.start or 0.0, f"{fault.plane}:{fault.target}", f"injected {fault.kind}", "none")
+        for fault in request.faults
+        if (fault.start or 0.0) <= duration_s
+    ]
 
 
 def _rounded(value: Any) -> Any:

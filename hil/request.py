@@ -7,6 +7,7 @@ from pydantic import Field, PositiveFloat, PositiveInt, ValidationError, model_v
 
 from hil.description import RobotDescription
 from hil.errors import InputError
+from hil.fault_spec import FaultSpec, check_faults
 from hil.schedule import Schedules
 from hil.validation import Config
 
@@ -38,6 +39,8 @@ class RunRequest(Config):
     realtime: bool = False
     """Pace a simulated robot by the monotonic clock instead of in lockstep."""
     schedules: Schedules = Schedules()
+    faults: tuple[FaultSpec, ...] = ()
+    """What goes wrong in a virtual robot."""
     estimator: EstimatorName | None = None
     pd: PdName | None = None
     stabilizer: bool | None = None
@@ -94,6 +97,9 @@ class RunRequest(Config):
             raise ValueError("--push needs a simulated robot")
         if self.bus == "real" and self.schedules.balls:
             raise ValueError("--ball needs a simulated robot")
+        if self.faults and (self.bus == "real" or self.backend == "mujoco"):
+            other = "a real one" if self.bus == "real" else "--backend mujoco, which has no wires"
+            raise ValueError(f"--fault is for a virtual robot behind wires, not for {other}")
         if self.priority is not None and self.lockstep:
             raise ValueError("--priority needs --realtime or --live: lockstep has no deadlines")
         return self
@@ -104,6 +110,9 @@ class RunRequest(Config):
         backend = self.backend or ("bus" if self.bus is not None else defaults.backend)
         if backend == "bus" and not description.buses:
             raise InputError(f"{description.name} has no servo bus: use --backend mujoco")
+        if self.faults and backend == "mujoco":
+            raise InputError(f"--fault needs --backend bus; {description.name} runs on mujoco here")
+        check_faults(self.faults, description)
         if self.pd is not None and description.actuation == "servo":
             raise InputError(f"--pd is for torque robots; {description.name} has servos")
         stabilizer = defaults.stabilizer if self.stabilizer is None else self.stabilizer

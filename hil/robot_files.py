@@ -7,8 +7,9 @@ from typing import Any
 
 import yaml
 
-from hil.description import Noise, Plant, RobotDescription, Supply, Timing
+from hil.description import RobotDescription, Timing
 from hil.errors import InputError, UnknownNameError
+from hil.twin import Noise, Plant, Supply
 from hil.validation import Config, read_yaml, validate
 
 

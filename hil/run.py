@@ -11,7 +11,7 @@ from hil.loop import Loop, Outcome
 from hil.recorder import Recorder
 from hil.report import make_report
 from hil.run_folder import make_meta, make_run_folder, write_json
-from hil.safety import Fault
+from hil.safety.severity import Fault
 from hil.session import Session
 from hil.trace import TraceSink
 
@@ -47,7 +47,7 @@ def run(session: Session, *, progress: bool = True) -> RunResult:
     return RunResult(books.folder, books.close(loop.outcome))
 
 
-def _statistics(session: Session) -> dict[str, float | None]:
+def session_statistics(session: Session) -> dict[str, float | None]:
     """The backend's statistics, with the session's figures where it has none."""
     known = session.backend.statistics()
     more = session.figures()
@@ -79,7 +79,7 @@ class Books:
             outcome,
             trace,
             self._meta["weight_n"],
-            _statistics(session),
+            session_statistics(session),
             truth=session.world is not None,
         )
         write_json(self.folder / "report.json", report)

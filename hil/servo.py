@@ -5,6 +5,7 @@ registers, and the MuJoCo backend hands them to the same servo physics without t
 """
 
 from dataclasses import dataclass
+from enum import IntEnum
 from typing import Protocol
 
 import numpy as np
@@ -19,6 +20,21 @@ PWM_FULL = 885
 """Goal PWM of 100 % duty."""
 
 
+class ServoMode(IntEnum):
+    """Control modes that a joint can be driven in, by their number in the servo's register."""
+
+    CURRENT = 0
+    """Torque by current; stiffness and damping are made on the host."""
+    POSITION = 3
+    """Stiffness by duty: the motor's back-EMF is its least damping."""
+    CURRENT_POSITION = 5
+    """Stiffness by current; damping is made on the host."""
+
+
+JOINT_MODES = {mode.name.lower(): mode for mode in ServoMode}
+"""Modes by the name that a robot file has for them."""
+
+
 @dataclass(slots=True)
 class ServoGoals:
     """Register values of one tick, in the servo's own direction, arrays of shape (n,)."""
@@ -31,6 +47,9 @@ class ServoGoals:
     """Position D Gain, register value."""
     pwm_limit: Ints
     """Goal PWM, 0 to 885."""
+    current: Ints | None = None
+    """Goal Current [counts]: the goal in current mode, the limit in current-based position mode.
+    None for a robot whose joints are all in position mode."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +64,10 @@ class MotorParameters:
     """Position P Gain register units per internal unit (128 by the e-manual)."""
     direction: Ints
     """+1 or -1: sign of the servo against the joint."""
+    current_unit: Floats | None = None
+    """[A] of one count of Goal Current; NaN for a servo without it."""
+    current_divisor: Floats | None = None
+    """Position P Gain register units per current count and position count, in mode 5."""
 
     def stall_torque(self, voltage: float) -> Floats:
         """Torque at standstill and full duty [N·m], shape (n,)."""

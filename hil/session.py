@@ -28,6 +28,11 @@ class Session:
     figures: Callable[[], dict[str, float | None]] = dict
     """Report figures that the backend's statistics leave open, such as those of a virtual robot's
     servos; asked for once, after the session is closed."""
+    begin_faults: Callable[[int], None] | None = None
+    """Tells a virtual robot when T = 0 is [ns on the backend's clock], where its faults wait for
+    it."""
+    watch: Callable[[], str | None] | None = None
+    """Asked after every tick with torque on: what else is wrong, or nothing."""
     closers: tuple[Callable[[], None], ...] = ()
     """End what the composition root started, in this order, after the backend is closed."""
 

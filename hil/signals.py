@@ -21,6 +21,10 @@ class StopSignals:
         self._received: list[int] = []
         self._shielded = False
 
+    def first(self) -> str | None:
+        """Name of the first signal received, or none."""
+        return signal.Signals(self._received[0]).name if self._received else None
+
     def check(self) -> None:
         """Raise KeyboardInterrupt for SIGINT, SystemExit(128 + number) for another signal."""
         if self._received:

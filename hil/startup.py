@@ -7,13 +7,16 @@ import numpy as np
 from hil.cycle import Cycle
 from hil.errors import BackendError
 from hil.interface import Estimate, Floats, JointCommand, Reference
-from hil.safety import Fault, never_heard
+from hil.safety.decision import Action
+from hil.safety.silence import never_heard
 from hil.session import Session
 
 RAMP_S = 1.0
 """Time from the present pose to the start pose."""
 SETTLE_S = 0.5
 """Time on the robot's own feet before T = 0."""
+RANGE_MARGIN = 0.1
+"""A present position may be so far outside the joint's range [rad]: stops give way a little."""
 SENSOR_TIMEOUT_S = 1.0
 """A joint or board that has not been heard of by then is missing."""
 
@@ -39,12 +42,17 @@ def await_sensors(session: Session, cycle: Cycle, after_tick: Callable[[], None]
     )
 
 
-def stand_up(session: Session, cycle: Cycle, after_tick: Callable[[], None]) -> Fault | None:
+def stand_up(
+    session: Session, cycle: Cycle, check: Callable[[], None], listen: Callable[[], None]
+) -> Action:
     """Ticks before T = 0: ramp while the body is held, let it go, settle.
 
-    `after_tick` may raise to break off. Returns the fault that forbids walking, or none.
+    `check` is called after every tick before arming, and may raise to break off; `listen` after
+    every tick with torque on. Returns RUN, or how the supervisor ended it. Raises
+    BackendError for a pose in which no joint may be armed.
     """
-    present = await_sensors(session, cycle, after_tick)
+    present = await_sensors(session, cycle, check)
+    _require_in_range(session, present)
     ramp_ticks, settle_ticks = (round(time * cycle.rate_hz) for time in (RAMP_S, SETTLE_S))
     session.backend.arm()
     cycle.begin(-ramp_ticks - settle_ticks)
@@ -53,11 +61,25 @@ def stand_up(session: Session, cycle: Cycle, after_tick: Callable[[], None]) -> 
         if session.world is not None:
             session.world.set_support(supported)
         while cycle.schedule.next_tick < until:
-            fault = cycle.tick(pose.command)
-            after_tick()
-            if fault is not None:
-                return fault
-    return None
+            action = cycle.tick(pose.command)
+            listen()
+            if action is not Action.RUN:
+                return action
+    return Action.RUN
+
+
+def _require_in_range(session: Session, present: Floats) -> None:
+    """A joint far outside its range is a wrong zero or a wrong horn: its torque stays off."""
+    outside = [
+        f"{joint.name} {angle:.2f} rad (range {joint.range[0]:g} to {joint.range[1]:g})"
+        for joint, angle in zip(session.description.joints, present.tolist(), strict=True)
+        if not joint.range[0] - RANGE_MARGIN <= angle <= joint.range[1] + RANGE_MARGIN
+    ]
+    if outside:
+        raise BackendError(
+            f"{session.description.name}: outside the range: {', '.join(outside)}; nothing was "
+            "armed: move the joint by hand, or check its zero and direction"
+        )
 
 
 class PoseRamp:

@@ -32,6 +32,8 @@ class TickTiming:
     """Clock time at which the tick began, after its schedule."""
     read_ns: int = 0
     estimate_ns: int = 0
+    safety_ns: int = 0
+    """The supervisor's judgement."""
     control_ns: int = 0
     """The controller's step alone."""
     write_ns: int = 0

@@ -83,7 +83,7 @@ class Trace:
     @classmethod
     def from_ticks(cls, rows: np.ndarray[Any, np.dtype[np.void]]) -> "Trace":
         """The walking ticks among recorded ones (`hil.record_layout.tick_dtype`)."""
-        walked = rows[rows["time_s"] >= 0]
+        walked = rows[(rows["time_s"] >= 0) & rows["safety"]["walking"]]
         motion = walked["truth" if "truth" in (rows.dtype.names or ()) else "estimate"]
         columns = {"time_s": walked["time_s"]}
         for names, source in (
@@ -123,7 +123,8 @@ class TraceSink:
     def put(self, record: TickRecord) -> None:
         """Take one tick, if it is a walking one."""
         row = self._rows
-        if record.time_s < 0 or row == len(self._columns["time_s"]):
+        full = row == len(self._columns["time_s"])
+        if record.time_s < 0 or full or not record.safety.walking:
             return
         self._columns["time_s"][row] = record.time_s
         sources = (

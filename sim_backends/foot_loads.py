@@ -5,7 +5,8 @@ import numpy as np
 
 from hil.description import RobotDescription
 from hil.interface import Floats
-from sim_backends.model import named
+from sim_backends.model import foot_geoms, named
+from sim_backends.uneven_floor import feelers_of
 
 _NONE, _TOE = -1, 2
 """Roles of geoms: left and right sole 0 and 1, left and right toe 2 and 3, others none."""
@@ -36,7 +37,8 @@ class FootLoads:
         for role, name in enumerate(names):
             if name is not None:
                 geom = named(model, mujoco.mjtObj.mjOBJ_GEOM, name, description.model_path)
-                self._role[geom] = role
+                for touching in (geom, *feelers_of(model, name)):
+                    self._role[touching] = role
                 if role < _TOE:
                     self._frames.append((data.geom_xpos[geom], data.xmat[model.geom_bodyid[geom]]))
         self._wrench = np.zeros(6)
@@ -78,3 +80,17 @@ def _corner(point: list[float], frame: tuple[list[float], list[float]]) -> int:
     rear = axes[0] * dx + axes[3] * dy + axes[6] * dz < 0.0
     right = axes[1] * dx + axes[4] * dy + axes[7] * dz < 0.0
     return 2 * rear + right
+
+
+def lowest_sole_point(
+    model: mujoco.MjModel, data: mujoco.MjData, description: RobotDescription
+) -> float:
+    """Height of the lowest point of all soles and toes, by their boxes [m]."""
+    lowest = np.inf
+    for name in foot_geoms(description):
+        geom = named(model, mujoco.mjtObj.mjOBJ_GEOM, name, description.model_path)
+        centre, half = np.split(model.geom_aabb[geom], 2)
+        up = data.geom_xmat[geom][6:9]
+        bottom = data.geom_xpos[geom][2] + up @ centre - np.abs(up) @ half
+        lowest = min(lowest, float(bottom))
+    return lowest

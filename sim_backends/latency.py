@@ -11,8 +11,8 @@ BITS_PER_BYTE = 10
 """Start bit, eight data bits, stop bit."""
 USB_CHUNK = 62
 """Data bytes of a full-speed FTDI packet; a full one is sent at once, a rest after the timer."""
-READ_BLOCK = 10
-"""Bytes read of every servo: Present Current to Present Position (126 to 135)."""
+READ_BLOCK = 16
+"""Bytes read of every servo: Realtime Tick to Present Position (120 to 135)."""
 WRITE_BLOCK = 4
 """Bytes written to every servo: Goal Position."""
 _FRAME_BYTES = {"foot": 30, "imu": 34}

@@ -6,8 +6,12 @@ import numpy as np
 from hil.clock import substeps_per_tick
 from hil.description import RobotDescription
 from hil.errors import InputError
+from hil.interface import Ints
 from hil.servo import MotorParameters
 from sim_backends.ball import add_ball
+from sim_backends.draws import HiddenValues
+from sim_backends.gear_train import ROTOR, add_rotor
+from sim_backends.uneven_floor import add_feelers
 
 SUPPORT = "support"
 """Weld between world and root body: the hand that holds the robot."""
@@ -24,13 +28,17 @@ _SUPPORT_SOLREF = (0.005, 1.0)
 
 
 def build_model(
-    description: RobotDescription, rate_hz: int, motors: MotorParameters | None
+    description: RobotDescription,
+    rate_hz: int,
+    motors: MotorParameters | None,
+    hidden: HiddenValues,
 ) -> mujoco.MjModel:
     """Compile the robot's MJCF as a plant that takes N substeps a tick.
 
     A servo robot gets one `dcmotor` a joint, fed with the terminal voltage (MuJoCo manual,
-    actuator/dcmotor); actuators of the MJCF itself are dropped, since a backend drives the
-    joints. Raises InputError when the MJCF cannot be read or lacks a part that is named.
+    actuator/dcmotor), on a rotor of its own where the joint has backlash; actuators of the MJCF
+    itself are dropped, since a backend drives the joints. Raises InputError when the MJCF cannot
+    be read or lacks a part that is named.
     """
     _keep_log_off_disk()
     spec = _read(description)
@@ -38,7 +46,7 @@ def build_model(
     for actuator in list(spec.actuators):
         spec.delete(actuator)
     if motors is not None:
-        _add_motors(spec, description, motors)
+        _add_motors(spec, description, motors, hidden)
     _add_support(spec, description.root)
     if description.plant.ball:
         add_ball(spec)
@@ -49,8 +57,10 @@ def build_model(
             objtype=mujoco.mjtObj.mjOBJ_SITE,
             objname=description.imu.site,
         )
+    if any(hidden.floor_height):
+        add_feelers(spec, foot_geoms(description), description.model_path)
     model = _compile(spec, description)
-    _configure(model, description, rate_hz)
+    _configure(model, description, rate_hz, hidden)
     return model
 
 
@@ -87,6 +97,7 @@ def _require_parts(spec: mujoco.MjSpec, description: RobotDescription) -> None:
     wanted = [
         ("body", [description.root], spec.bodies),
         ("joint", description.joint_names, spec.joints),
+        ("geom", foot_geoms(description), spec.geoms),
         ("site", [description.imu.site] if description.imu is not None else [], spec.sites),
     ]
     for what, names, parts in wanted:
@@ -125,10 +136,15 @@ def _compile(spec: mujoco.MjSpec, description: RobotDescription) -> mujoco.MjMod
 
 
 def _add_motors(
-    spec: mujoco.MjSpec, description: RobotDescription, motors: MotorParameters
+    spec: mujoco.MjSpec,
+    description: RobotDescription,
+    motors: MotorParameters,
+    hidden: HiddenValues,
 ) -> None:
     for j, name in enumerate(description.joint_names):
-        actuator = spec.add_actuator(name=name, target=name, trntype=mujoco.mjtTrn.mjTRN_JOINT)
+        gap = float(hidden.backlash[j])
+        target = add_rotor(spec, name, gap) if gap > 0.0 else name
+        actuator = spec.add_actuator(name=name, target=target, trntype=mujoco.mjtTrn.mjTRN_JOINT)
         constant = float(motors.torque_constant[j])
         actuator.set_to_dcmotor(
             motorconst=[constant, constant], resistance=float(motors.resistance[j])
@@ -151,35 +167,74 @@ def _add_support(spec: mujoco.MjSpec, root: str) -> None:
     weld.solref = list(_SUPPORT_SOLREF)
 
 
-def _configure(model: mujoco.MjModel, description: RobotDescription, rate_hz: int) -> None:
+def motor_joints(model: mujoco.MjModel, description: RobotDescription) -> list[int]:
+    """Ids of the joints on which the motors act: rotors where there is backlash."""
+    names = description.joint_names
+    rotors = [mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name + ROTOR) for name in names]
+    joints = [named(model, mujoco.mjtObj.mjOBJ_JOINT, n, description.model_path) for n in names]
+    return [j if rotor < 0 else rotor for j, rotor in zip(joints, rotors, strict=True)]
+
+
+def _configure(
+    model: mujoco.MjModel, description: RobotDescription, rate_hz: int, hidden: HiddenValues
+) -> None:
     option = model.opt
     option.timestep = 1.0 / (rate_hz * substeps(description, rate_hz))
     # MuJoCo 4.0.0 solves sparse Jacobians wrongly (mujoco issue 3767); robots here are small.
     option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
     for bit in _DISABLED:
         option.disableflags |= int(bit)
-    _set_friction(model, description)
-    _set_joints(model, description)
+    _set_contacts(model, description)
+    _set_joints(model, description, hidden)
     root = named(model, mujoco.mjtObj.mjOBJ_BODY, description.root, description.model_path)
     model.body_mass[root] *= description.plant.mass_scale
     model.body_inertia[root] *= description.plant.mass_scale
     mujoco.mj_setConst(model, mujoco.MjData(model))
 
 
-def _set_friction(model: mujoco.MjModel, description: RobotDescription) -> None:
-    """The larger sliding friction of two geoms counts, so it is set on floor and soles alike."""
-    floor = np.flatnonzero(model.body_weldid[model.geom_bodyid] == 0)
-    model.geom_friction[floor, 0] = description.plant.floor_friction
-    for name in foot_geoms(description):
-        geom = named(model, mujoco.mjtObj.mjOBJ_GEOM, name, description.model_path)
-        model.geom_friction[geom, 0] = description.plant.floor_friction
+def _set_contacts(model: mujoco.MjModel, description: RobotDescription) -> None:
+    """Friction and stiffness of everything that feet and floor touch with.
+
+    The larger sliding friction of two geoms counts and their time constants are averaged, so both
+    are set on floor and feet alike. A time constant T is a stiffness ∝ 1/T² at the same damping
+    ratio (MuJoCo manual, Solver parameters); a negative one is the stiffness itself.
+    """
+    plant = description.plant
+    feet = [
+        named(model, mujoco.mjtObj.mjOBJ_GEOM, name, description.model_path)
+        for name in foot_geoms(description)
+    ]
+    touching = np.isin(model.geom_bodyid, model.geom_bodyid[feet])
+    touching |= model.body_weldid[model.geom_bodyid] == 0
+    model.geom_friction[touching, 0] = plant.floor_friction
+    direct = model.geom_solref[:, 0] < 0.0
+    model.geom_solref[touching & ~direct, 0] /= np.sqrt(plant.pad_stiffness)
+    model.geom_solref[touching & direct, 0] *= plant.pad_stiffness
+    model.geom_solref[touching & direct, 1] *= np.sqrt(plant.pad_stiffness)
 
 
-def _set_joints(model: mujoco.MjModel, description: RobotDescription) -> None:
-    for name in description.joint_names:
-        joint = named(model, mujoco.mjtObj.mjOBJ_JOINT, name, description.model_path)
-        dof = model.jnt_dofadr[joint]
-        if description.plant.armature is not None:
-            model.dof_armature[dof] = description.plant.armature
-        if description.plant.joint_friction is not None:
-            model.dof_frictionloss[dof] = description.plant.joint_friction
+def _set_joints(model: mujoco.MjModel, description: RobotDescription, hidden: HiddenValues) -> None:
+    """Rotor inertia and friction of the gears, on the motor's side of a gap."""
+    joints = [
+        named(model, mujoco.mjtObj.mjOBJ_JOINT, name, description.model_path)
+        for name in description.joint_names
+    ]
+    outer = model.jnt_dofadr[joints]
+    inner = model.jnt_dofadr[motor_joints(model, description)]
+    for values, drawn in (
+        (model.dof_armature, hidden.armature),
+        (model.dof_frictionloss, hidden.joint_friction),
+        (model.dof_damping, None),
+    ):
+        nominal = values[outer]
+        values[outer[outer != inner]] = 0.0
+        values[inner] = nominal if drawn is None else drawn
+    model.dof_damping[inner] += description.plant.viscous_friction
+
+
+def selection(addresses: Ints) -> slice | Ints:
+    """A slice where the addresses are a run, so that reading them makes a view, not a copy."""
+    start = int(addresses[0])
+    if np.array_equal(addresses, np.arange(start, start + addresses.size)):
+        return slice(start, start + addresses.size)
+    return addresses

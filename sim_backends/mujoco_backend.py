@@ -8,7 +8,7 @@ import numpy as np
 from hil.description import RobotDescription
 from hil.errors import BackendError, InputError, InvalidCommandError
 from hil.interface import AppliedCommand, JointCommand, Limit, SensorFrame, StopMode
-from hil.servo import ServoGoals, ServoMapping
+from hil.servo import JOINT_MODES, ServoGoals, ServoMapping, ServoMode
 from sim_backends.latency import command_latency_ns
 from sim_backends.plant import Plant
 from sim_backends.plant_clock import PlantClock
@@ -60,6 +60,16 @@ class MujocoBackend:
         self._pending: deque[tuple[int, ServoGoals]] = deque()
         self._armed = False
         self._open = False
+        self._set_modes()
+
+    def _set_modes(self) -> None:
+        """Put every servo into the mode that its joint is driven in."""
+        if self._plant.servos is not None:
+            for firmware, joint in zip(
+                self._plant.servos.firmware, self._description.joints, strict=True
+            ):
+                firmware.mode = JOINT_MODES[joint.mode]
+            self._plant.servos.refresh()
 
     def open(self) -> None:
         """Begin; torque stays off."""
@@ -142,8 +152,17 @@ class MujocoBackend:
         self._pending.clear()
         if mode is StopMode.TORQUE_OFF or self._plant.servos is None:
             self._enable(False)
+        else:
+            self._rest()
         self._armed = False
         return True
+
+    def _rest(self) -> None:
+        """A servo in current mode has no place to hold: no current."""
+        if self._plant.servos is not None:
+            for firmware in self._plant.servos.firmware:
+                if firmware.mode == ServoMode.CURRENT:
+                    firmware.goal_current = 0.0
 
     def close(self) -> None:
         """Torque off, and no more reading or writing."""
@@ -162,8 +181,13 @@ class MujocoBackend:
 
 def _copied(goals: ServoGoals) -> ServoGoals:
     """The mapping reuses its goals, and slow buses hold them for more than a tick."""
+    current = None if goals.current is None else goals.current.copy()
     return ServoGoals(
-        goals.position.copy(), goals.p_gain.copy(), goals.d_gain.copy(), goals.pwm_limit.copy()
+        goals.position.copy(),
+        goals.p_gain.copy(),
+        goals.d_gain.copy(),
+        goals.pwm_limit.copy(),
+        current,
     )
 
 

@@ -1,17 +1,30 @@
 """The simulated body: one MuJoCo model stepped on an integer-nanosecond grid."""
 
+from dataclasses import replace
+
 import mujoco
 import numpy as np
 
 from hil.description import RobotDescription
 from hil.errors import BackendError, InputError
-from hil.interface import Floats, Ints, Truth
+from hil.interface import Floats, Truth
 from hil.servo import MotorParameters
-from sim_backends.foot_loads import FootLoads
-from sim_backends.model import ACCELEROMETER, SUPPORT, build_model, foot_geoms, named, substeps
+from sim_backends.draws import hidden_values
+from sim_backends.foot_loads import FootLoads, lowest_sole_point
+from sim_backends.model import (
+    ACCELEROMETER,
+    SUPPORT,
+    build_model,
+    motor_joints,
+    named,
+    selection,
+    substeps,
+)
+from sim_backends.plant_servos import encoder_phase, make_servos
 from sim_backends.servo_figures import SERVO_KEYS
 from sim_backends.servo_physics import ServoPhysics
 from sim_backends.thrown_ball import ThrownBall
+from sim_backends.uneven_floor import UnevenFloor
 
 DIVERGED_SPEED = 1e5
 """Norm of all velocities that no robot reaches [rad/s, m/s]."""
@@ -23,7 +36,8 @@ class Plant:
     Substep i runs from i·10⁹ // (rate·N) ns to the next grid point with what stood when it began:
     goals and torques written between two grid points act from the second one on. At first the
     robot is in its start pose with its lowest sole point on the floor. Implements
-    `hil.interface.World`. The seed draws where in a count each encoder's zero lies.
+    `hil.interface.World`. The seed draws what the robot hides, and where in a count each
+    encoder's zero lies.
     """
 
     def __init__(
@@ -45,13 +59,27 @@ class Plant:
         self.substeps = substeps(description, rate_hz)
         """Physics substeps a tick, N."""
         self.substep_index = 0
-        self.model = build_model(description, rate_hz, motors)
+        self.hidden = hidden_values(description, seed)
+        """What the seed drew; sensors never show it."""
+        self.motors = motors
+        """Constants that the data sheets have, not those of this robot."""
+        if motors is not None:
+            motors = replace(
+                motors, torque_constant=motors.torque_constant * self.hidden.torque_constant_scale
+            )
+        self.model = build_model(description, rate_hz, motors, self.hidden)
         self.data = mujoco.MjData(self.model)
         self._find_root()
         joints = [self._id(mujoco.mjtObj.mjOBJ_JOINT, name) for name in description.joint_names]
-        self._dofs = _selection(self.model.jnt_dofadr[joints])
-        self._angles = _selection(self.model.jnt_qposadr[joints])
+        self._dofs = selection(self.model.jnt_dofadr[joints])
+        self._angles = selection(self.model.jnt_qposadr[joints])
+        rotors = motor_joints(self.model, description)
+        self._rotor_dofs = selection(self.model.jnt_dofadr[rotors])
+        self._rotor_angles = selection(self.model.jnt_qposadr[rotors])
         self._find_imu()
+        self._floor: UnevenFloor | None = None
+        if any(self.hidden.floor_height):
+            self._floor = UnevenFloor(self.model, self.data, self.hidden.floor_height, seed)
         self._loads = FootLoads(self.model, self.data, description)
         self._loads_index = 0
         self._corners, self._toes = [0.0] * 8, [0.0] * 2
@@ -64,16 +92,18 @@ class Plant:
         self.servos: ServoPhysics | None = None
         """Motors of a servo robot."""
         if motors is not None and description.supply is not None:
-            phase = np.random.default_rng(seed).uniform(-0.5, 0.5, n)
-            self.servos = ServoPhysics(
-                motors,
-                description.supply,
-                self.model.opt.timestep,
-                self.model.actuator_gainprm[:, 0],
-                self.data.ctrl,
-                phase,
-            )
-            self.servos.drive(self.joint_position, self.joint_velocity)
+            self.servos = make_servos(
+                description, description.supply, motors, self.hidden, encoder_phase(seed, n),
+                self.model, self.data, self._rotor_dofs,
+            )  # fmt: skip
+            self.servos.delay_goals(self.substeps * description.plant.latency_ticks)
+            self.drive()
+
+    def drive(self) -> None:
+        """Let the servos act on the state as it is now."""
+        if self.servos is not None:
+            velocity = self._qvel[self._dofs]
+            self.servos.drive(self._qpos[self._angles], velocity, self._qvel[self._rotor_dofs])
 
     def _id(self, kind: mujoco.mjtObj, name: str) -> int:
         return named(self.model, kind, name, self.description.model_path)
@@ -112,22 +142,16 @@ class Plant:
 
     def _set_start_pose(self, velocity: tuple[float, float]) -> None:
         self.data.qpos[self._angles] = self.description.start_position
+        self.data.qpos[self._rotor_angles] = self.description.start_position
         self._orientation[:] = (1.0, 0.0, 0.0, 0.0)
         mujoco.mj_kinematics(self.model, self.data)
-        self._position[2] -= self._lowest_sole_point()
+        if self._floor is not None:
+            self._position[2] -= self._floor.place()
+        else:
+            self._position[2] -= lowest_sole_point(self.model, self.data, self.description)
         self._linear[:2] = velocity
         self.set_support(not self.description.start.moving)
         mujoco.mj_forward(self.model, self.data)
-
-    def _lowest_sole_point(self) -> float:
-        lowest = np.inf
-        for name in foot_geoms(self.description):
-            geom = self._id(mujoco.mjtObj.mjOBJ_GEOM, name)
-            centre, half = np.split(self.model.geom_aabb[geom], 2)
-            up = self.data.geom_xmat[geom][6:9]
-            bottom = self.data.geom_xpos[geom][2] + up @ centre - np.abs(up) @ half
-            lowest = min(lowest, float(bottom))
-        return lowest
 
     # Stepping --------------------------------------------------------------------------------
 
@@ -153,8 +177,9 @@ class Plant:
             raise BackendError(
                 f"{self.description.name}: the simulation diverged at {self.time_ns * 1e-9:.3f} s"
             )
-        if self.servos is not None:
-            self.servos.drive(self._qpos[self._angles], self._qvel[self._dofs])
+        if self._floor is not None and self.substep_index % self.substeps == 0:
+            self._floor.follow()
+        self.drive()
 
     def set_torque(self, torque: Floats) -> None:
         """Joint torques of a torque robot [N·m], (n,), until set again."""
@@ -254,10 +279,12 @@ class Plant:
             self.model.eq_data[support, 6:10] = self._orientation
         self.data.eq_active[support] = supported
 
+    def rotor_dof(self, joint: int) -> int:
+        """Degree of freedom of a joint's rotor: the joint's own where there is no backlash."""
+        return int(np.arange(self.model.nv)[self._rotor_dofs][joint])
 
-def _selection(addresses: Ints) -> slice | Ints:
-    """A slice where the addresses are a run, so that reading them makes a view, not a copy."""
-    start = int(addresses[0])
-    if np.array_equal(addresses, np.arange(start, start + addresses.size)):
-        return slice(start, start + addresses.size)
-    return addresses
+    def hoist(self, height: float) -> None:
+        """Lift the root body [m] and hold it there: the feet hang free."""
+        self._position[2] += height
+        self.set_support(True)
+        mujoco.mj_forward(self.model, self.data)

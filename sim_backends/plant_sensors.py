@@ -10,7 +10,7 @@ from hil.interface import CORNERS, SIDES, Floats, SensorFrame
 from hil.servo import CENTRE_COUNTS, COUNTS_PER_RADIAN
 from sim_backends.latency import board_age_ns
 from sim_backends.plant import Plant
-from sim_backends.sensor_models import CellErrors, ImuErrors, ImuSample
+from sim_backends.sensor_models import CellErrors, ImuErrors, ImuSample, dead_cells
 from sim_backends.servo_physics import ServoPhysics
 
 VELOCITY_UNIT = 0.229 * 2 * np.pi / 60
@@ -59,9 +59,14 @@ class PlantSensors:
         # Another stream than that of the plant's own draws from the same seed.
         random = np.random.default_rng((seed, 1))
         self._plant = plant
-        self._cells = CellErrors(description.noise, random, len(SIDES) * len(CORNERS))
+        dead = {
+            index * len(CORNERS) + corner
+            for index, side in enumerate(SIDES)
+            for corner in dead_cells(description, side)
+        }
+        self._cells = CellErrors(description.noise, random, len(SIDES) * len(CORNERS), dead)
         self._zero: list[float] = self._cells.zero.tolist()
-        self._imu_errors = ImuErrors(description.noise, random)
+        self._imu_errors = ImuErrors(description.noise, random, plant.hidden.pitch_bias)
         foot_board = description.feet["left"].board
         delay = board_age_ns(description, description.boards[foot_board]) if foot_board else 0
         self._feet = DelayedSamples(plant, delay, self._sample_feet)
@@ -69,6 +74,9 @@ class PlantSensors:
         if description.imu is not None:
             delay = board_age_ns(description, description.boards[description.imu.board])
             self._imu = DelayedSamples(plant, delay, self._sample_imu)
+        motors = plant.motors
+        if motors is not None:
+            self._torque_unit = motors.direction * motors.torque_constant
         self._angle_unit = np.array([j.direction for j in description.joints]) / COUNTS_PER_RADIAN
 
     def after_substep(self) -> None:
@@ -80,8 +88,8 @@ class PlantSensors:
             self._imu.take()
 
     def _sample_feet(self) -> list[float]:
-        forces = zip(self._plant.corner_forces(), self._zero, strict=True)
-        return self._cells.measure([force + zero for force, zero in forces])
+        forces = self._cells.measure(self._plant.corner_forces())
+        return [force + zero for force, zero in zip(forces, self._zero, strict=True)]
 
     def _sample_imu(self) -> ImuSample:
         plant = self._plant
@@ -123,6 +131,7 @@ class PlantSensors:
         np.divide(self._plant.joint_velocity, VELOCITY_UNIT, velocity)
         np.rint(velocity, velocity)
         np.multiply(velocity, VELOCITY_UNIT, velocity)
-        frame.joint_torque[:] = servos.torque()
+        np.multiply(servos.sensed_current, self._torque_unit, frame.joint_torque)
+        frame.joint_error[:] = servos.protection.errors
         frame.joint_temperature[:] = servos.degrees()
-        frame.joint_voltage.fill(round(servos.voltage / VOLTAGE_UNIT) * VOLTAGE_UNIT)
+        frame.joint_voltage.fill(round(servos.measured_voltage / VOLTAGE_UNIT) * VOLTAGE_UNIT)

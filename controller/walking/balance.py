@@ -21,7 +21,8 @@ class Balance:
 
     p = k_z·(ξ − ξ_ref), ξ_ref = b·e^(ωφT) the steady walk's capture point at phase φ, clipped to
     the ankle limit. The force acts at p + k_c·(p − cop), cop the measured one: stiff ankles
-    on a sole that tilts a little would otherwise leave it at an edge.
+    on a sole that tilts a little would otherwise leave it at an edge. Places and pressures count
+    from the pivot, `ahead` of the ankle: the knee is ahead of it, and so carries less.
     """
 
     def __init__(self, config: BalanceConfig, model: RobotModel, ankle_limit: bool) -> None:
@@ -34,7 +35,9 @@ class Balance:
         share = (config.limit_x, config.limit_y) if ankle_limit else (1.0, 1.0)
         self._limit: Pair = (share[0] * self._sole[0], share[1] * self._sole[1])
         self.pressure: Pair = (0.0, 0.0)
-        """p from the stance ankle, heading frame [m]."""
+        """p from the pivot, heading frame [m]."""
+        self.measured: Pair | None = None
+        """The measured cop from the pivot, heading frame [m]; None while it is not trusted."""
         self._force_point: Pair = (0.0, 0.0)
 
     def update(self, state: PendulumState, start: Pair, phase: float) -> None:
@@ -49,10 +52,12 @@ class Balance:
     def compare(self, corners: Sequence[float], gait: Gait, frame: HeadingFrame) -> None:
         """Move the force's point against the error of the cop of the stance foot's corners [N]."""
         self._force_point = p = self.pressure
+        self.measured = None
         load = sum(corners)
         if load < LOADED * gait.weight or gait.time_in_step < self._config.settle_time:
             return
-        measured = frame.to_heading(self._pressure_centre(corners, load, gait.stance))
+        x, y = frame.to_heading(self._pressure_centre(corners, load, gait.stance))
+        self.measured = measured = (x - self._config.ahead, y)
         k, limit = self._config.feedback, self._sole
         self._force_point = (
             clip(p[0] + k * (p[0] - measured[0]), limit[0]),
@@ -75,6 +80,7 @@ class Balance:
         model, p = self._model, self._force_point
         height = float(model.com[2])
         x, y = frame.to_world(((place[0] - p[0]) / height, (place[1] - p[1]) / height))
+        pivot = frame.to_world((p[0] + self._config.ahead, p[1]))
         share = min(gait.time_in_step / self._config.load_transfer_time, 1.0)
         if gait.steps == 0:
             share = 1.0
@@ -82,7 +88,7 @@ class Balance:
         reactions = [
             SoleForce(
                 gait.stance,
-                model.ankles[gait.stance] + (*frame.to_world(p), -sole_drop),
+                model.ankles[gait.stance] + (*pivot, -sole_drop),
                 share * force,
             )
         ]

@@ -6,6 +6,8 @@ author's walk: period 0.7 s, touch-down accepted after phase 0.4, step forced to
 
 from dataclasses import dataclass
 
+from pydantic import NonNegativeFloat
+
 from hil.validation import Config
 
 
@@ -22,6 +24,9 @@ class GaitConfig(Config):
     """Vertical load on the swing foot that ends the step, as a fraction of body weight."""
     flat_corner_load: float = 0.0145
     """Load that makes a corner count as loaded, as a fraction of body weight (10 N of 70.4 kg)."""
+    flat_time: NonNegativeFloat = 0.0
+    """How long three corners must have been loaded without a break [s]; with noisy load cells
+    more than 0, or a foot that just lands on its heel soon counts as flat."""
 
 
 @dataclass(slots=True)
@@ -39,6 +44,8 @@ class Gait:
     """Latched within a step once at least three corners of the stance foot are loaded."""
     time_in_step: float = 0.0
     """[s]"""
+    _loaded_since: float | None = None
+    """`time_in_step` since which three corners have been loaded."""
 
     @property
     def swing(self) -> int:
@@ -69,9 +76,15 @@ class Gait:
         self.time_in_step = 0.0
         self.steps += 1
         self.foot_flat = False
+        self._loaded_since = None
         return True
 
     def update_foot_flat(self, loaded_corners: int) -> None:
         """Latch the flat stance foot, seed section 3 and its stored code: three of four corners."""
-        if loaded_corners >= 3:
+        if loaded_corners < 3:
+            self._loaded_since = None
+            return
+        if self._loaded_since is None:
+            self._loaded_since = self.time_in_step
+        if self.time_in_step - self._loaded_since > self.config.flat_time - 1e-9:
             self.foot_flat = True

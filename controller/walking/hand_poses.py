@@ -124,8 +124,8 @@ class HandPoses:
         values: Floats = (1.0 - t) * table[low] + t * table[low + 1]
         return values
 
-    def _pose(self, arms: list[ArmGeometry], stance: int, angles: Floats) -> Floats:
-        root, yaw, pitch, roll = angles[:4].tolist()
+    def _pose(self, arms: list[ArmGeometry], stance: int, angles: list[float]) -> Floats:
+        root, yaw, pitch, roll = angles[:4]
         sign = 1 - 2 * stance
         torso = np.array(yaw_pitch_roll(sign * yaw, pitch, sign * roll))
         rows = []

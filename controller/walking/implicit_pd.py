@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 
 from controller.robot_model import RobotModel
+from controller.selection import selection
 from controller.walking.joint_groups import JointGroups
 from controller.walking.pose_tracking import PoseTracking
 from hil.interface import Floats, Ints
@@ -34,11 +35,17 @@ class ImplicitPd:
         dt: float,
     ) -> None:
         self._robot, self._groups, self._tracking, self._dt = robot, groups, tracking, dt
-        self._others = others
+        self._balanced = [[tracking.root, group, *others.tolist()] for group in range(len(groups))]
         model = robot.model
         nv = model.nv
         self._masks = self._dof_masks()
-        self._gain = dt * tracking.damping + dt * dt * tracking.stiffness
+        self._joint_masks: Floats = self._masks[groups.of_joint]
+        self._dofs = selection(robot.dof_addresses)
+        self._joints_of = [selection(joints) for joints in groups.joints]
+        self._balanced_masks = [self._masks[rows][:, None, :] for rows in self._balanced]
+        self._shares = np.zeros((len(groups.of_joint), 1))
+        self._axes: Floats = robot.data.cdof[:, :3]
+        self._gain = (dt * tracking.damping + dt * dt * tracking.stiffness)[:, None, :]
         self._mass = np.zeros((nv, nv))
         self._bias = np.zeros(nv)
         self._coupling = np.zeros((nv, nv))
@@ -61,11 +68,16 @@ class ImplicitPd:
         return masks
 
     def correct(
-        self, torques: Floats, hips: tuple[int, int], shares: tuple[float, float]
+        self,
+        torques: Floats,
+        hips: tuple[int, int],
+        shares: tuple[float, float],
+        standing: bool = True,
     ) -> Floats:
         """Torques of the joints [N·m], shape (n,), from those of the law, shape (n,).
 
-        `hips` are the groups of stance and swing hip, `shares` their parts of the root balance.
+        `hips` are the groups of stance and swing hip, `shares` their parts of the root balance;
+        `standing` says that the stance foot is on the floor.
         """
         robot = self._robot
         model, data = robot.model, robot.data
@@ -74,17 +86,17 @@ class ImplicitPd:
         mujoco.mj_fullM(model, data, self._mass)
         mujoco.mj_rne(model, data, 0, self._bias)
         law = np.zeros(model.nv)
-        law[robot.dof_addresses] = torques
-        coupling = self._law_coupling(hips, shares)
+        law[self._dofs] = torques
+        coupling = self._law_coupling(hips, shares, standing)
         acceleration = np.linalg.solve(self._mass + coupling, law - self._bias + force)
         self._applied = law - coupling @ acceleration
         self._last_velocity = data.qvel.copy()
-        applied: Floats = self._applied[robot.dof_addresses]
+        applied: Floats = self._applied[self._dofs].copy()
         return applied
 
     def note_applied(self, torques: Floats) -> None:
         """Joint torques that are applied in place of what `correct` returned [N·m], (n,)."""
-        self._applied[self._robot.dof_addresses] = torques
+        self._applied[self._dofs] = torques
 
     def _observed_force(self) -> Floats:
         """Generalised contact force of the last tick [N, N·m], shape (nv,)."""
@@ -94,19 +106,23 @@ class ImplicitPd:
         observed: Floats = self._mass @ change + self._bias - self._applied
         return observed
 
-    def _law_coupling(self, hips: tuple[int, int], shares: tuple[float, float]) -> Floats:
+    def _law_coupling(
+        self, hips: tuple[int, int], shares: tuple[float, float], standing: bool
+    ) -> Floats:
         """The matrix C, shape (nv, nv)."""
-        robot, groups, frames = self._robot, self._groups, self._tracking.frames
-        axes = robot.data.cdof[:, :3]
-        world = (frames * self._gain[:, None, :]) @ frames.transpose(0, 2, 1)
-        own = axes[robot.dof_addresses]
-        rows = (own[:, None, :] @ world[groups.of_joint])[:, 0, :] @ axes.T
-        rows *= self._masks[groups.of_joint]
-        terms = [self._tracking.root, hips[1], *self._others]
-        balance = sum(world[row] @ (axes.T * self._masks[row]) for row in terms)
-        rows[groups.joints[hips[0]]] = 0.0  # the stance hip has no PD of its own
+        frames, axes = self._tracking.frames, self._axes
+        own, across = axes[self._dofs], axes.T.copy()
+        world = (frames * self._gain) @ frames.transpose(0, 2, 1)
+        rows = np.vecmat(own, world.take(self._groups.of_joint, axis=0)) @ across
+        rows *= self._joint_masks
+        if standing:
+            rows[self._joints_of[hips[0]]] = 0.0  # the stance hip has no PD of its own
+        masked = across * self._balanced_masks[hips[1]]
+        gains = world.take(self._balanced[hips[1]], axis=0).transpose(1, 0, 2).reshape(3, -1)
+        balance = gains @ masked.reshape(-1, len(axes))
+        self._shares[:] = 0.0
         for hip, share in zip(hips, shares, strict=True):
-            joints = groups.joints[hip]
-            rows[joints] -= share * (own[joints] @ balance)
-        self._coupling[robot.dof_addresses] = rows
+            self._shares[self._joints_of[hip]] = share
+        rows -= (self._shares * own) @ balance
+        self._coupling[self._dofs] = rows
         return self._coupling

@@ -86,5 +86,5 @@ class JointGroups:
 
     def project(self, torques: Floats, axes: Floats) -> Floats:
         """Hinge torques [N·m], shape (n,), of world torque vectors of shape (groups, 3)."""
-        hinge: Floats = (axes * torques[self.of_joint]).sum(axis=1)
+        hinge: Floats = np.vecdot(axes, torques.take(self.of_joint, axis=0))
         return hinge

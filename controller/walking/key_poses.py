@@ -47,13 +47,15 @@ class CurveTable:
     def __init__(self, curves: Sequence[Knots], end_phase: float) -> None:
         """Tabulate curves from phase 0 to `end_phase`; they are held constant beyond."""
         phases = np.linspace(0.0, end_phase, SAMPLES)
-        self._table = np.stack([catmull_rom(knots, phases) for knots in curves], axis=1)
+        table = np.stack([catmull_rom(knots, phases) for knots in curves], axis=1)
+        self._table: list[list[float]] = table.tolist()
         self._scale = (SAMPLES - 1) / end_phase
 
-    def at(self, phase: float) -> Floats:
-        """Values of all curves at a phase, shape (curves,)."""
+    def at(self, phase: float) -> list[float]:
+        """Values of all curves at a phase."""
         place = min(max(phase * self._scale, 0.0), SAMPLES - 1.000001)
         low = int(place)
         t = place - low
-        values: Floats = (1.0 - t) * self._table[low] + t * self._table[low + 1]
-        return values
+        rest = 1.0 - t
+        pairs = zip(self._table[low], self._table[low + 1], strict=True)
+        return [rest * a + t * b for a, b in pairs]

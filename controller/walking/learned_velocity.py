@@ -29,32 +29,31 @@ class LearnedVelocity:
         self.values = np.zeros((2, 2, config.knots))
         """Deviations [m/s] by stance side, axis (sagittal, coronal) and knot."""
         self._tables = [self._table(side) for side in range(2)]
-        self._phase = np.zeros(capacity)
-        self._speed = np.zeros((capacity, 2))
-        self._count = 0
+        self._capacity = capacity
+        self._phase: list[float] = []
+        self._speed: list[Pair] = []
 
     def deviation(self, stance: int, phase: float) -> Pair:
         """Learned deviation, sagittal and coronal [m/s]."""
-        sagittal, coronal = self._tables[stance].at(phase).tolist()
+        sagittal, coronal = self._tables[stance].at(phase)
         return sagittal, coronal
 
     def observe(self, phase: float, velocity: Pair) -> None:
         """Record the speed of one tick [m/s]."""
-        if self._count < len(self._phase):
-            self._phase[self._count] = phase
-            self._speed[self._count] = velocity
-            self._count += 1
+        if len(self._phase) < self._capacity:
+            self._phase.append(phase)
+            self._speed.append(velocity)
 
     def end_step(self, stance: int, learn: bool) -> None:
         """Learn from the step that `stance` carried, or only forget its record."""
-        count, self._count = self._count, 0
-        if not learn or count == 0:
+        phases, recorded = self._phase, np.array(self._speed)
+        self._phase, self._speed = [], []
+        if not learn or not phases:
             return
-        recorded = self._speed[:count]
         median = self._config.normalise == "median"
         speed = recorded - (np.median if median else np.mean)(recorded, axis=0)
         for axis in range(2):
-            observed = np.interp(self._at, self._phase[:count], speed[:, axis])
+            observed = np.interp(self._at, phases, speed[:, axis])
             error = observed - self.values[stance, axis]
             mean = float(np.abs(error).mean())
             if mean < self._config.threshold:

@@ -19,6 +19,8 @@ class PendulumState:
         self._lead = lead
         self.pendulum = Pendulum(1.0, period)
         """With ω of the present com height."""
+        self.seen: Pair = (0.0, 0.0)
+        """Place as the estimate has it, of its own time [m]."""
         self.place: Pair = (0.0, 0.0)
         """[m]"""
         self.velocity: Pair = (0.0, 0.0)
@@ -26,11 +28,11 @@ class PendulumState:
         self.capture: Pair = (0.0, 0.0)
         """[m]"""
 
-    def observe(self, ankle: Sequence[float], frame: HeadingFrame, offset: float) -> None:
+    def observe(self, ankle: Sequence[float], frame: HeadingFrame, offset: Pair) -> None:
         """Take the model's state.
 
-        `ankle` is the stance ankle [m]; `offset` is added to the sagittal place [m]: what
-        the com seems to be off, as steps of the wrong length tell.
+        `ankle` is the stance ankle [m]; `offset` is added to the place, heading frame [m]: where
+        the pivot is, and what the com is off, as its motion and steps of the wrong length tell.
         """
         model, pendulum = self._model, self.pendulum
         com_x, com_y, height = model.com.tolist()
@@ -39,7 +41,8 @@ class PendulumState:
         self.velocity = frame.to_heading((u, v))
         x, y = frame.to_heading((com_x - ankle[0], com_y - ankle[1]))
         u, v = self.velocity
-        self.place = (x + self._lead * u + offset, y + self._lead * v)
+        self.seen = (x, y)
+        self.place = (x + self._lead * u + offset[0], y + self._lead * v + offset[1])
         self.capture = (
             self.place[0] + u / pendulum.omega,
             self.place[1] + v / pendulum.omega,

@@ -52,7 +52,7 @@ class PoseTargets:
     def update(self, gait: Gait) -> float:
         """Set the targets of a phase; returns the drop of the swing ankle below its hip [m]."""
         tracking, sign = self._tracking, gait.stance_sign
-        angles: list[float] = self._curves.at(gait.phase).tolist()
+        angles = self._curves.at(gait.phase)
         root, yaw, pitch, roll, knee, stance_foot, swing_foot, drop = angles
         target, stance, swing = tracking.target, gait.stance, gait.swing
         turn_about_y(target[tracking.root], root)

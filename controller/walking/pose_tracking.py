@@ -13,7 +13,7 @@ from controller.robot_model import RobotModel
 from controller.walking.joint_groups import JointGroups, kind_of
 from controller.walking.rotations import rotation_vectors
 from controller.walking.torque_config import GainSet, TorqueWalkingConfig
-from hil.interface import Floats
+from hil.interface import Floats, Ints
 
 
 class PoseTracking:
@@ -36,7 +36,6 @@ class PoseTracking:
         count = len(groups) + 1
         kinds = [kind_of(name) for name in groups.names]
         self._robot = robot
-        self._lead = lead
         self.root = count - 1
         """Row of the root."""
         self.relative = np.array([config.tracking[k].frame == "parent" for k in kinds] + [False])
@@ -46,39 +45,44 @@ class PoseTracking:
         self.stiffness, self.damping = _scaled(gains, [*kinds, "root"], np.array(scales))
         self._child = np.append(groups.child, robot.root_body)
         self._parent = np.append(groups.parent, 0)
-        self._weights = self.relative.astype(np.float64)[:, None]
+        self._carrier = np.where(self.relative, self._parent, 0)
         self.target = np.tile(np.eye(3), (count, 1, 1))
         """Target orientations R* in the tracking frames, shape (groups + 1, 3, 3)."""
         self.target_rate = np.zeros((count, 3))
         """Target angular velocities ω* in the tracking frames [rad/s]."""
         self.frames = np.tile(np.eye(3), (count, 1, 1))
         """Tracking frames R_f, frame to world."""
-        self._absolute = np.flatnonzero(~self.relative)
+        self._rate_gain = self.damping + lead * self.stiffness
+        self._absolute: list[int] = np.flatnonzero(~self.relative).tolist()
         self._orientations: Floats = robot.data.xmat.reshape(-1, 3, 3)
-        self._last_root_rate = np.zeros(3)
+        entries = np.arange(9).reshape(3, 3).T + 9 * self._child[:, None, None]
+        self._transposed: Ints = entries
+        """Where R_childᵀ is in the orientations of all bodies, shape (groups + 1, 3, 3)."""
+        self._last_root_rate = [0.0, 0.0, 0.0]
 
     def set_frames(self, heading: Floats, special: Mapping[int, Floats]) -> None:
         """Place the tracking frames; `special` gives rows a frame of their own."""
         np.take(self._orientations, self._parent, axis=0, out=self.frames, mode="clip")
-        self.frames[self._absolute] = heading
+        for row in self._absolute:
+            self.frames[row] = heading
         for row, frame in special.items():
             self.frames[row] = frame
 
     def torques(self) -> Floats:
         """World torque vectors of all rows [N·m], shape (groups + 1, 3)."""
         rates, frames = self._robot.angular_velocities, self.frames
-        child = self._orientations.take(self._child, axis=0)
-        error = rotation_vectors(self.target @ (child.transpose(0, 2, 1) @ frames))
+        to_child = self._orientations.take(self._transposed)
+        local = rotation_vectors(self.target @ (to_child @ frames))
         omega = rates.take(self._child, axis=0)
-        root_rate = omega[self.root].copy()
-        omega[self.root] = 0.5 * (root_rate + self._last_root_rate)
+        x, y, z = root_rate = omega[self.root].tolist()
+        u, v, w = self._last_root_rate
+        omega[self.root] = 0.5 * (x + u), 0.5 * (y + v), 0.5 * (z + w)
         self._last_root_rate = root_rate
-        omega -= self._weights * rates.take(self._parent, axis=0)
+        omega -= rates.take(self._carrier, axis=0)  # the world, body 0, does not turn
         rate = self.target_rate - np.vecmat(omega, frames)
-        if self._lead:
-            error += self._lead * rate
-        local = self.stiffness * error
-        local += self.damping * rate
+        rate *= self._rate_gain
+        local *= self.stiffness
+        local += rate
         torque: Floats = np.matvec(frames, local)
         return torque
 

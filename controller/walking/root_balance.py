@@ -4,6 +4,8 @@ Seed 000_bd1305a0ae731442, section 3 (SIMBICON's torso rule), with the load shar
 author's stored code.
 """
 
+import math
+
 import numpy as np
 
 from controller.walking.torque_config import RootBalanceConfig
@@ -17,7 +19,7 @@ def hip_moment(root: Floats, swing_hip: Floats, others: Floats) -> Floats:
     the sum of the reactions is the torque τ_root that the pelvis asks for. `others` are the
     torques on the remaining children of the root, shape (k, 3).
     """
-    moment: Floats = -(root + swing_hip + others.sum(axis=0))
+    moment: Floats = -(root + swing_hip + np.add.reduce(others))
     return moment
 
 
@@ -36,8 +38,6 @@ def stance_share(stance_load: float, swing_load: float) -> tuple[float, float]:
 def hip_damping(config: RootBalanceConfig, relative_rate: Floats) -> Floats:
     """Stance-hip damping −c·|ω|·clip(ω, ±ω_max) [N·m], of the hip's relative rate ω [rad/s]."""
     limit = config.hip_damping_limit
-    size = float(np.sqrt(relative_rate @ relative_rate))
-    torque: Floats = (
-        -config.hip_damping * size * np.minimum(np.maximum(relative_rate, -limit), limit)
-    )
-    return torque
+    rates = relative_rate.tolist()
+    factor = -config.hip_damping * math.hypot(*rates)
+    return np.array([factor * min(max(rate, -limit), limit) for rate in rates])

@@ -75,10 +75,10 @@ def rotation_vectors(rotations: Floats) -> Floats:
     return skew
 
 
-def small_rotation_vector(rotation: Floats) -> Floats:
-    """Axis times sin θ of one rotation of shape (3, 3): its logarithm up to θ³/6, shape (3,)."""
+def small_rotation_vector(rotation: Floats) -> tuple[float, float, float]:
+    """Axis times sin θ of one rotation of shape (3, 3): its logarithm up to θ³/6."""
     (_, xy, xz), (yx, _, yz), (zx, zy, _) = rotation.tolist()
-    return np.array((0.5 * (zy - yz), 0.5 * (xz - zx), 0.5 * (yx - xy)))
+    return 0.5 * (zy - yz), 0.5 * (xz - zx), 0.5 * (yx - xy)
 
 
 def heading_of(rotation: Floats) -> float:

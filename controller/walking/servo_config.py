@@ -6,6 +6,9 @@ from controller.walking.alteration import AlterationConfig
 from controller.walking.command_ramp import CommandConfig
 from controller.walking.gait import GaitConfig
 from controller.walking.heading import HeadingConfig
+from controller.walking.place_trim import PlaceTrimConfig
+from controller.walking.sole_trim import SoleTrimConfig
+from controller.walking.swing_governor import GovernorConfig
 from hil.description import RobotDescription
 from hil.validation import Config, validate
 
@@ -40,6 +43,8 @@ class SwingConfig(Config):
     """Third harmonic of the lift speed: trades peak knee speed against knee acceleration."""
     landing_phase: PositiveFloat
     """The foot is above its landing point from this phase on."""
+    ramp: float = Field(gt=0, le=0.5)
+    """Share of its way's time in which the foot speeds up, and in which it slows down."""
     search_speed: PositiveFloat
     """Speed of the foot's target below the ground after phase 1 [m/s]."""
 
@@ -55,6 +60,8 @@ class BalanceConfig(Config):
     """ZMP limit as a fraction of the ankle's distance to the nearer sole end."""
     limit_y: float = Field(gt=0, le=1)
     """ZMP limit as a fraction of the sole's half width."""
+    ahead: float
+    """Centre of pressure of a balanced stance ahead of the ankle [m]."""
     feedback: float = Field(ge=0)
     """Factor on the error of the measured centre of pressure, added to the wanted one."""
     settle_time: float = Field(ge=0)
@@ -64,7 +71,7 @@ class BalanceConfig(Config):
     torque_gain: float = Field(ge=0)
     """Factor on the feed-forward torque of weight and ground reaction."""
     inertia_gain: float = Field(ge=0)
-    """Factor on the swing leg's inertia torque."""
+    """Factor on the swing leg's inertia torque M·q̈*."""
 
 
 class TimingConfig(Config):
@@ -105,9 +112,15 @@ class ServoWalkingConfig(Config):
     """Largest angle between torso and a foot [rad]."""
     placement: PlacementConfig
     swing: SwingConfig
+    governor: GovernorConfig
     balance: BalanceConfig
     timing: TimingConfig
+    place_trim: PlaceTrimConfig
+    sole_trim: SoleTrimConfig
     alteration: AlterationConfig
+    """Sagittal."""
+    lateral_alteration: AlterationConfig
+    """Lateral, over whole strides."""
     weight_shift: WeightShiftConfig
 
 

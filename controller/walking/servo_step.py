@@ -11,12 +11,16 @@ from controller.walking.gait import Gait
 from controller.walking.heading import HeadingRamp
 from controller.walking.heading_frame import HeadingFrame, Pair
 from controller.walking.pendulum_state import PendulumState
+from controller.walking.place_trim import PlaceTrim
 from controller.walking.rotations import heading_of
 from controller.walking.servo_config import ServoWalkingConfig
+from controller.walking.sole_trim import SoleTrim
 from controller.walking.step_average import StepAverage
 from controller.walking.step_timing import remaining_time
 from hil.interface import Estimate, Reference
 
+UNLOADED = 0.05
+"""Load of the swing foot, as a fraction of body weight, below which the stance is a single one."""
 MAX_SPEEDUP = 2.5
 """How much faster than nominal the phase may run when landing is urgent."""
 
@@ -36,8 +40,10 @@ class ServoStep:
         self.gait = Gait(config.gait, model.weight)
         self.heading_ramp = HeadingRamp(config.heading)
         self._command = CommandRamp(config.command)
-        self._alteration = Alteration(config.alteration)
-        self._mean_speed = StepAverage()
+        self._alterations = Alteration(config.alteration), Alteration(config.lateral_alteration)
+        self._mean_speeds = StepAverage(), StepAverage()
+        self.trim = PlaceTrim(config.place_trim)
+        self.sole_trim = SoleTrim(config.sole_trim)
         self.frame = HeadingFrame()
         lead = config.latency + self._dt / 2
         self.state = PendulumState(model, config.gait.period, lead)
@@ -68,12 +74,14 @@ class ServoStep:
         loaded = gait.config.flat_corner_load * gait.weight
         gait.update_foot_flat(sum(force > loaded for force in corners))
         self.ankle = self._model.ankles[gait.stance].tolist()
-        state.observe(self.ankle, self.frame, self._alteration.value)
-        self._mean_speed.add(state.velocity[0])
+        state.observe(self.ankle, self.frame, self._offset(gait.stance))
+        for mean, speed in zip(self._mean_speeds, state.velocity, strict=True):
+            mean.add(speed)
         sway = -gait.stance_sign * self._width
         start = state.steady_start(self._speed, sway)
         self.balance.update(state, start, gait.phase)
         self.balance.compare(corners, gait, self.frame)
+        self._watch_fall(sum(estimate.foot_force[gait.swing].tolist()))
         remaining = self._set_phase_rate(start[1] * state.pendulum.growth)
         if gait.phase < self._config.placement.freeze_phase:
             point = landing_point(
@@ -84,7 +92,8 @@ class ServoStep:
                 remaining,
                 gait.stance_sign,
             )
-            self.landing = self.frame.to_world(point)
+            (x, y), (to_x, to_y) = self.trim.value[gait.stance], self.trim.value[gait.swing]
+            self.landing = self.frame.to_world((point[0] + x - to_x, point[1] + y - to_y))
 
     def swing_yaw(self) -> float:
         """Heading of the swing foot: it turns into the torso's during the swing [rad]."""
@@ -98,12 +107,39 @@ class ServoStep:
         width = reference.step_width
         self._width = self._config.placement.step_width if math.isnan(width) else width
         load = sum(estimate.foot_force[gait.swing].tolist())
+        stance = gait.stance
         ended = gait.advance(dt, load, self.phase_rate * gait.config.period)
         if ended:
-            self._alteration.end_step(self._mean_speed.finish(), self._speed[0])
+            self.trim.end_step(stance, dt)
+            self.sole_trim.end_step(stance)
+            self._end_step()
         if ended or not self._begun:
             self._begin_step()
         self.frame.set(self.heading_ramp.update(dt, gait, reference.heading))
+
+    def _offset(self, stance: int) -> Pair:
+        """What the place of the com is corrected by on this stance foot [m]."""
+        x, y = self.trim.value[stance]
+        ahead = self._config.balance.ahead
+        return self._alterations[0].value - x - ahead, self._alterations[1].value - y
+
+    def _watch_fall(self, swing_load: float) -> None:
+        """Let the trim learn while one foot alone carries the body."""
+        state, cop, trim = self.state, self.balance.measured, self.trim
+        settled = self.gait.time_in_step > trim.config.settle_time
+        if cop is None or not settled or swing_load > UNLOADED * self.gait.weight:
+            return
+        x, y = state.seen
+        place = (x - self._config.balance.ahead, y)
+        p = self.balance.pressure
+        self.sole_trim.add((cop[0] - p[0], cop[1] - p[1]))
+        trim.add(place, state.velocity, cop, state.pendulum.omega)
+
+    def _end_step(self) -> None:
+        """Adapt to the mean speeds: sagittal over the step, lateral over every stride."""
+        self._alterations[0].end_step(self._mean_speeds[0].finish(), self._speed[0])
+        if self.gait.stance == 0:
+            self._alterations[1].end_step(self._mean_speeds[1].finish(), self._speed[1])
 
     def _begin_step(self) -> None:
         """Remember where the swing foot leaves."""

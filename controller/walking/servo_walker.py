@@ -6,16 +6,17 @@ close a stiff position loop: horizontal freedom of the stance leg comes from tar
 the measured place of the torso, and the virtual force acts as a centre of pressure.
 """
 
-import mujoco
 import numpy as np
 
 from controller.robot_model import RobotModel
+from controller.walking.leg_inertia import LegInertia
 from controller.walking.leg_kinematics import Vector
 from controller.walking.leg_targets import INSTANTS, LegPlanner, LegTargets
 from controller.walking.rotations import heading_of
 from controller.walking.servo_config import servo_walking_config
 from controller.walking.servo_step import ServoStep
 from controller.walking.support_force import SupportForce
+from controller.walking.swing_governor import SwingGovernor
 from controller.walking.swing_trajectory import SwingTrajectory
 from controller.walking.weight_shift import WeightShift
 from hil.description import RobotDescription
@@ -24,12 +25,15 @@ from hil.interface import SIDES, Estimate, Floats, Ints, JointCommand, Reference
 
 LEG_JOINTS = ("hip_yaw", "hip_roll", "hip_pitch", "knee", "ankle_pitch", "ankle_roll")
 
+ANKLES = slice(4, 6)
+"""Ankle pitch and roll among the joints of a leg."""
+
 
 class ServoWalker:
     """Controller of a robot with six position servos a leg.
 
     Sends q*, q̇*, the description's stiffness and damping, and the feed-forward torque
-    τ_ff + I·q̈* (I the swing leg's inertia); what a servo needs to realise them is not its concern.
+    τ_ff + M·q̈* (M the swing leg's inertia); what a servo needs to realise them is not its concern.
     """
 
     def __init__(
@@ -50,7 +54,9 @@ class ServoWalker:
         self._command.stiffness[:] = [joint.stiffness for joint in description.joints]
         self._command.damping[:] = [joint.damping for joint in description.joints]
         self._rest: Floats = np.array(description.start_position)
-        self._inertia = self._leg_inertia()
+        self._inertia = LegInertia(model, self._legs)
+        self._governor = self._swing_governor(description)
+        self._governed_step = -1
 
     def step(self, estimate: Estimate, reference: Reference) -> JointCommand:
         """The command of this tick. The returned object is reused by the next call."""
@@ -60,13 +66,15 @@ class ServoWalker:
         step = self._step
         step.update(estimate, reference)
         targets = self._walk(estimate)
+        self._govern(targets, estimate)
+        targets.position[:, ANKLES] += step.sole_trim.value
         reactions = step.balance.ground_reaction(
             step.state.place, step.gait, step.frame, self._planner.ankle_height
         )
         torque = self.config.balance.torque_gain * self._force.torques(reactions)
         swing = step.gait.swing
-        torque[self._legs[swing]] += (
-            self.config.balance.inertia_gain * self._inertia * targets.acceleration[swing]
+        torque[self._legs[swing]] += self.config.balance.inertia_gain * self._inertia.torque(
+            swing, targets.acceleration[swing]
         )
         self._report()
         return self._fill(targets, torque)
@@ -117,15 +125,26 @@ class ServoWalker:
         command.torque[:] = torque
         return command
 
-    def _leg_inertia(self) -> Floats:
-        """Inertia that each joint of a swinging leg moves in the start pose [kg·m²], shape (6,)."""
-        model, data = self._model.model, self._model.data
-        data.qpos[self._model.qpos_addresses] = self._rest
-        mujoco.mj_forward(model, data)
-        mass = np.zeros((model.nv, model.nv))
-        mujoco.mj_fullM(model, data, mass)
-        inertias: Floats = np.diag(mass)[self._model.dof_addresses][self._legs[0]].copy()
-        return inertias
+    def _govern(self, targets: LegTargets, estimate: Estimate) -> None:
+        """Bring the swing leg's targets to what its servos can follow."""
+        gait, legs = self._step.gait, self._legs
+        swing = gait.swing
+        if gait.steps != self._governed_step:
+            self._governed_step = gait.steps
+            joints = legs[swing]
+            measured = estimate.joint_position[joints], estimate.joint_velocity[joints]
+            self._governor.begin(*measured, self._lead - self._dt)
+        self._governor.update(
+            self._dt, targets.position[swing], targets.velocity[swing], targets.acceleration[swing]
+        )
+
+    def _swing_governor(self, description: RobotDescription) -> SwingGovernor:
+        """The governor of either leg, in the start pose's inertia."""
+        inertia = self._inertia.at_rest(self._rest)
+        joints = [description.joints[joint] for joint in self._legs[0].tolist()]
+        damping = [joint.damping for joint in joints]
+        stall = [joint.torque_limit for joint in joints]
+        return SwingGovernor(self.config.governor, inertia, damping, stall)
 
     def _report(self) -> None:
         step, status = self._step, self.status

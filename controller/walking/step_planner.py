@@ -53,6 +53,7 @@ class StepPlanner:
         self._angle = 0.0
         self._swing_start: Pair = (0.0, 0.0)
         self._first = True
+        self._turned = self._turned_before = False
         self.new_step = True
         """This tick is the first of its step."""
         self.heading = np.eye(3)
@@ -66,15 +67,16 @@ class StepPlanner:
         self.foot_target = [0.0, 0.0, 0.0]
         """World target of the swing ankle [m]; the height is left to the caller."""
 
-    def update(self, estimate: Estimate, loads: Floats, reference: Reference) -> None:
+    def update(self, estimate: Estimate, loads: Pair, reference: Reference) -> None:
         """Move the plan on by one tick; `loads` are the vertical forces on the feet [N]."""
         gait = self.gait
         command = self._command.update(self._dt, reference.speed, reference.lateral)
         stance = gait.stance
-        ended = gait.advance(self._dt, float(loads[gait.swing]))
+        ended = gait.advance(self._dt, loads[gait.swing])
         if ended:
             self._end_step(stance, command)
         self._turn(self.heading_ramp.update(self._dt, gait, reference.heading))
+        self._turned |= self.heading_ramp.turning
         self.new_step = ended or self._first
         self._first = False
         if self.new_step:
@@ -84,20 +86,26 @@ class StepPlanner:
         self._place_foot(command, reference.step_width)
 
     def _end_step(self, stance: int, command: Pair) -> None:
-        """Judge the step that `stance` carried, and adapt to it unless it is a recovery step."""
+        """Judge the step that `stance` carried, and adapt to it if it was an ordinary one.
+
+        A turn rotates the frame in which speeds are measured, so the steps that turn, and the one
+        after them, teach nothing; nor do recovery steps (first author's code).
+        """
         averages = self._averages[0].finish(), self._averages[1].finish()
-        recovered = self.recovery.active
-        if self.recovery.end_step(self.heading_ramp.turning):
+        recovered, turned = self.recovery.active, self._turned
+        if self.recovery.end_step(turned):
             self._learned.reset()
-        steady = not (self.recovery.active or recovered)
-        if steady:
+            self._offset.clear()
+        ordinary = not (self.recovery.active or recovered or turned or self._turned_before)
+        self._turned_before, self._turned = turned, False
+        if ordinary:
             self.alteration.end_step(averages[0], command[0])
             if self._last_coronal is not None:
                 both = 0.5 * (averages[1] + self._last_coronal)
                 self.coronal_alteration.end_step(both, command[1])
             self._offset.end_step(averages, command)
-        self._last_coronal = averages[1] if steady else None
-        self._learned.end_step(stance, learn=steady and not self.heading_ramp.turning)
+        self._last_coronal = averages[1] if ordinary else None
+        self._learned.end_step(stance, learn=ordinary)
 
     def _observe_speed(self, command: Pair) -> None:
         """Take the speed of the tick, and what is wanted of it."""

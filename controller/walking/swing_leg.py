@@ -76,7 +76,7 @@ class SwingLeg:
         self._last: tuple[Floats, float] | None = None
         self.hip = np.eye(3)
         """Thigh in the pelvis frame, shape (3, 3)."""
-        self.hip_rate = np.zeros(3)
+        self.hip_rate = (0.0, 0.0, 0.0)
         """In the pelvis frame [rad/s]."""
         self.knee = 0.0
         self.knee_rate = 0.0
@@ -95,13 +95,16 @@ class SwingLeg:
         """Targets that bring the ankle to a world position, `pelvis` being its orientation."""
         thigh, self.knee = two_link(self._links, hip, ankle, lateral, self._config.reach)
         self.hip = pelvis.T @ thigh
-        self.hip_rate[:] = 0.0
+        self.hip_rate = (0.0, 0.0, 0.0)
         self.knee_rate = 0.0
         if self._last is not None:
-            limit = self._config.rate_limit
-            turn = small_rotation_vector(self.hip @ self._last[0].T) / self._dt
-            np.maximum(turn, -limit, out=turn)
-            np.minimum(turn, limit, out=self.hip_rate)
-            rate = (self.knee - self._last[1]) / self._dt
+            limit, dt = self._config.rate_limit, self._dt
+            x, y, z = small_rotation_vector(self.hip @ self._last[0].T)
+            self.hip_rate = (
+                min(max(x / dt, -limit), limit),
+                min(max(y / dt, -limit), limit),
+                min(max(z / dt, -limit), limit),
+            )
+            rate = (self.knee - self._last[1]) / dt
             self.knee_rate = min(max(rate, -limit), limit)
         self._last = (self.hip, self.knee)

@@ -9,9 +9,11 @@ from typing import Literal
 import numpy as np
 
 from controller.robot_model import RobotModel
+from controller.selection import selection
 from controller.walking.ankle_guards import AnkleGuards
-from controller.walking.ankle_limit import limited, sole_levers
+from controller.walking.ankle_limit import ground_slope, limited, sole_levers
 from controller.walking.gravity_compensation import GravityCompensation
+from controller.walking.heading_frame import Pair
 from controller.walking.hip_gravity import HipGravity
 from controller.walking.implicit_pd import ImplicitPd
 from controller.walking.joint_groups import JointGroups
@@ -46,6 +48,7 @@ class TorqueLaw:
         trunk = groups.parent == robot.root_body
         trunk[self._hips] = False
         self._trunk = np.flatnonzero(trunk)
+        self._trunk_rows = selection(self._trunk)
         self._gravity = GravityCompensation(robot, groups)
         weighed = config.hip_gravity == "always" or (config.hip_gravity == "implicit" and implicit)
         self._hip_gravity = HipGravity(robot, groups) if weighed else None
@@ -60,26 +63,27 @@ class TorqueLaw:
             for side in SIDES
         ]
         self._guards = AnkleGuards(robot) if config.ankle_guards else None
-        self._last_loads = np.zeros(2)
+        self._last_loads: Pair = (0.0, 0.0)
 
-    def torques(self, plan: StepPlanner, loads: Floats, forefeet: Floats) -> Floats:
+    def torques(self, plan: StepPlanner, loads: Pair, forefeet: Pair) -> Floats:
         """Torques of all joints [N·m], shape (n,).
 
         `loads` are the vertical forces on the feet, `forefeet` their part on front corners and
-        toe [N], shape (2,).
+        toe [N], left and right.
         """
         gait, tracking = plan.gait, self.tracking
         foot = plan.foot_heading
         flat = {} if foot is None else {int(self._ankles[gait.stance]): foot}
         tracking.set_frames(plan.heading, flat)
         vectors = tracking.torques()
-        shares = stance_share(float(loads[gait.stance]), float(loads[gait.swing]))
+        shares = stance_share(loads[gait.stance], loads[gait.swing])
         hips = (int(self._hips[gait.stance]), int(self._hips[gait.swing]))
-        self._balance_root(vectors, hips, shares)
+        standing = loads[gait.stance] > 0.0
+        self._balance_root(vectors, hips, shares, standing)
         torque = vectors[: len(self.groups)]
         torque += self._gravity.torques(gait.stance)
         if self._hip_gravity is not None:
-            load = float(loads[gait.swing])
+            load = loads[gait.swing]
             torque[hips[0]] += self._hip_gravity.torque(gait.stance, shares[0], load)
         if gait.foot_flat:
             self._push_body(torque, plan, loads, forefeet)
@@ -87,38 +91,47 @@ class TorqueLaw:
         axes = self._robot.joint_axes
         joints = self.groups.project(torque, axes)
         if self._limit_ankle and gait.foot_flat:
-            self._limit(joints, gait.stance, float(loads[gait.stance]))
+            self._limit(joints, gait.stance, loads[gait.stance])
         if self._implicit is not None:
-            joints = self._implicit.correct(joints, hips, shares)
+            joints = self._implicit.correct(joints, hips, shares, standing)
         return joints
 
     def _balance_root(
-        self, torques: Floats, hips: tuple[int, int], shares: tuple[float, float]
+        self,
+        torques: Floats,
+        hips: tuple[int, int],
+        shares: tuple[float, float],
+        standing: bool,
     ) -> None:
-        """Put the root's torque on the hips; the last row of `torques` is the root's."""
+        """Put the root's torque on the hips; the last row of `torques` is the root's.
+
+        The stance hip gives its pose up for that. While its foot is off the floor, when it has
+        bounced or slipped, the hip keeps the pose in which it landed: with no torque at all the
+        leg would fly off sideways.
+        """
         stance, swing = hips
-        moment = hip_moment(torques[-1], torques[swing], torques[self._trunk])
-        rates = self._robot.angular_velocities
-        groups = self.groups
-        relative = rates[groups.child[stance]] - rates[groups.parent[stance]]
-        torques[stance] = shares[0] * moment + hip_damping(self._config.root_balance, relative)
+        moment = hip_moment(torques[-1], torques[swing], torques[self._trunk_rows])
         torques[swing] += shares[1] * moment
+        if standing:
+            rates = self._robot.angular_velocities
+            groups = self.groups
+            relative = rates[groups.child[stance]] - rates[groups.parent[stance]]
+            damping = hip_damping(self._config.root_balance, relative)
+            torques[stance] = shares[0] * moment + damping
 
     def note_applied(self, torques: Floats) -> None:
         """Joint torques that are applied in place of what `torques` returned [N·m], (n,)."""
         if self._implicit is not None:
             self._implicit.note_applied(torques)
 
-    def _push_body(
-        self, torques: Floats, plan: StepPlanner, loads: Floats, forefeet: Floats
-    ) -> None:
+    def _push_body(self, torques: Floats, plan: StepPlanner, loads: Pair, forefeet: Pair) -> None:
         """Virtual force on the body, carried by the legs in proportion to two ticks' loads."""
-        carried = loads + self._last_loads
-        total = float(carried.sum())
+        left, right = loads[0] + self._last_loads[0], loads[1] + self._last_loads[1]
+        total = left + right
         if total > 0.0:
             before = None if self._guards is None else torques[self._ankles]
             force = self._virtual.force(plan.wanted, plan.velocity, plan.heading)
-            self._virtual.add_torques(torques, force, carried / total)
+            self._virtual.add_torques(torques, force, (left / total, right / total))
             if self._guards is not None and before is not None:
                 self._guard(self._guards, torques, before, plan, forefeet)
 
@@ -128,21 +141,24 @@ class TorqueLaw:
         torques: Floats,
         before: Floats,
         plan: StepPlanner,
-        forefeet: Floats,
+        forefeet: Pair,
     ) -> None:
         """Withdraw from the ankles what the virtual force added to `before` and may not."""
         phase, heading = plan.gait.phase, plan.heading
         for foot, group in enumerate(self._ankles):
             added = torques[group] - before[foot]
-            kept = guards.guarded(added, foot, float(forefeet[foot]), phase, heading)
+            kept = guards.guarded(added, foot, forefeet[foot], phase, heading)
             torques[group] = before[foot] + kept
 
     def _limit(self, joints: Floats, stance: int, load: float) -> None:
+        robot, levers = self._robot, self._levers[stance]
+        slope = ground_slope(levers, robot.com, robot.ankles[stance], robot.feet[stance])
         pitch, roll = self._ankle_joints[stance]
         joints[pitch], joints[roll] = limited(
-            self._levers[stance],
+            levers,
             self._config.ankle_limit.fraction,
             load,
+            slope,
             float(joints[pitch]),
             float(joints[roll]),
         )

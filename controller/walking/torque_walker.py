@@ -6,8 +6,6 @@ balance at the hips, gravity compensation and velocity control by a virtual forc
 
 from typing import Literal
 
-import numpy as np
-
 from controller.robot_model import RobotModel
 from controller.walking.pose_targets import PoseTargets
 from controller.walking.stabilizer.config import SolverName
@@ -63,13 +61,17 @@ class TorqueWalker:
             self.status.walking = False
             return self._command
         self._robot.set_state(estimate)
-        loads = estimate.foot_force.sum(axis=1) + estimate.toe_force
+        feet: list[list[float]] = estimate.foot_force.tolist()
+        toes: list[float] = estimate.toe_force.tolist()
+        loads = (sum(feet[0]) + toes[0], sum(feet[1]) + toes[1])
         self._plan.update(estimate, loads, reference)
         self._aim_swing_leg()
-        forefeet = estimate.foot_force[:, :2].sum(axis=1) + estimate.toe_force
+        forefeet = (feet[0][0] + feet[0][1] + toes[0], feet[1][0] + feet[1][1] + toes[1])
         torques = self._law.torques(self._plan, loads, forefeet)
         if self._stabilizer is not None:
-            self._stabilize(self._stabilizer, torques, estimate)
+            stance, swing = self._plan.gait.stance, self._plan.gait.swing
+            measured = [*feet[stance], toes[stance]]
+            self._stabilize(self._stabilizer, torques, measured, bool(estimate.contact[swing]))
         self._command.torque[:] = torques
         self._report()
         return self._command
@@ -87,13 +89,12 @@ class TorqueWalker:
         self._swing_leg.update(hip, plan.foot_target, lateral, robot.root_rotation)
         self._targets.set_swing_leg(swing, self._swing_leg)
 
-    def _stabilize(self, stabilizer: Stabilizer, torques: Floats, estimate: Estimate) -> None:
+    def _stabilize(
+        self, stabilizer: Stabilizer, torques: Floats, measured: list[float], touching: bool
+    ) -> None:
         """Add torques that keep the stance foot's sides loaded, in place."""
         gait = self._plan.gait
-        stance = gait.stance
-        measured = np.append(estimate.foot_force[stance], estimate.toe_force[stance])
-        touching = bool(estimate.contact[gait.swing])
-        stabilizer.add_torques(torques, stance, gait.foot_flat, measured, touching)
+        stabilizer.add_torques(torques, gait.stance, gait.foot_flat, measured, touching)
         self._law.note_applied(torques)
         self.status.stabilizer_iterations = stabilizer.solution.iterations
         self.status.stabilizer_limited = stabilizer.solution.limited

@@ -33,11 +33,12 @@ class VirtualForce:
         self._anchors: Floats = robot.data.xanchor
         self._gain = (robot.mass * config.gain[0], robot.mass * config.gain[1])
         self._limit = config.limit * robot.weight
-        self._legs = np.array([groups.legs(kind) for kind in LEG_KINDS])
-        self._leg_anchors = groups.anchor_joint[self._legs]
+        legs = np.array([groups.legs(kind) for kind in LEG_KINDS])
+        self._groups: list[list[int]] = legs.tolist()
+        self._leg_anchors = groups.anchor_joint[legs]
         self._back_anchor = int(groups.anchor_joint[back])
         mass = robot.model.body_mass
-        shank, thigh = groups.child[self._legs[1]], groups.child[self._legs[2]]
+        shank, thigh = groups.child[legs[1]], groups.child[legs[2]]
         self._bodies = np.array([shank, thigh, np.full(2, robot.root_body)])
         masses = mass[self._bodies]
         self._torso = int(groups.child[back])
@@ -62,12 +63,13 @@ class VirtualForce:
         heights -= self._sums * self._anchors[:, 2].take(self._leg_anchors)
         return heights
 
-    def add_torques(self, torques: Floats, force: Vector, shares: Floats) -> None:
+    def add_torques(self, torques: Floats, force: Vector, shares: Pair) -> None:
         """Add the torque vectors to `torques`, shape (groups, 3); `shares` of the legs sum to 1."""
-        leg = self.lever_heights() * shares
         fx, fy, _ = force
-        torques[self._legs, 0] += fy * leg
-        torques[self._legs, 1] -= fx * leg
+        for heights, groups in zip(self.lever_heights().tolist(), self._groups, strict=True):
+            for height, group, share in zip(heights, groups, shares, strict=True):
+                torques[group, 0] += fy * share * height
+                torques[group, 1] -= fx * share * height
         lever = self._centres[self._torso] - self._anchors[self._back_anchor]
         rx, ry, rz = (self._torso_share * lever).tolist()
         torques[self._back] += (-rz * fy, rz * fx, rx * fy - ry * fx)

@@ -42,6 +42,8 @@ FRAME_SIZE = {kind: size + OVERHEAD for kind, size in _PAYLOAD_SIZE.items()}
 _CRC_START = 0xFFFF
 
 ALL_CELLS = 0b1111
+CELL_RAIL = (1 << 23) - 1
+"""Counts of a cell at the end of its 24-bit converter's range: open, shorted or overloaded."""
 """Status of a foot frame whose four cells are valid."""
 
 

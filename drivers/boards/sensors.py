@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from drivers.boards.calibration import FootConverter, ImuConverter
-from drivers.boards.frames import ALL_CELLS, FootFrame, ImuFrame, ImuStatus
+from drivers.boards.frames import ALL_CELLS, CELL_RAIL, FootFrame, ImuFrame, ImuStatus
 from drivers.boards.reader import BoardReader
 from hil.interface import SIDES, SensorFrame
 
@@ -32,9 +32,19 @@ class FootSensor:
         if not isinstance(latest, FootFrame):
             return
         if arrived:
+            latest = reader.latest = _without_railed(latest)
             self.converter.convert(latest, frame.foot_force[side])
         fresh = reader.is_fresh(now_ns)
         frame.foot_valid[side] = _CELL_VALID[latest.status & ALL_CELLS] if fresh else _NO_CELL
+
+
+def _without_railed(frame: FootFrame) -> FootFrame:
+    """The frame without the cells whose converter is at its end, whatever its board says."""
+    counts = frame.counts
+    if max(counts) < CELL_RAIL and min(counts) > -CELL_RAIL:
+        return frame
+    railed = sum(1 << cell for cell in range(4) if abs(counts[cell]) >= CELL_RAIL)
+    return frame._replace(status=frame.status & ~railed)
 
 
 @dataclass(frozen=True, slots=True)

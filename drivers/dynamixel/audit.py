@@ -20,6 +20,8 @@ from hil.servo import COUNTS_PER_TURN
 
 FORBIDDEN_DRIVE_MODE = DriveMode.REVERSE | DriveMode.TORQUE_ON_BY_GOAL_UPDATE
 """Directions are the robot file's, and a goal must not switch torque on."""
+PWM_SLOPE = 255
+"""The fastest; the factory's 140 of a 5 V servo takes 18 ms from no duty to all of it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +31,7 @@ class ExpectedServo:
     joint: str
     id: int
     model: ServoModel
+    mode: OperatingMode = OperatingMode.POSITION
 
 
 @dataclass(slots=True)
@@ -62,8 +65,7 @@ def audit_bus(
         group.write_all(register, ids, 0)
     _correct(bus, client, group, present, result)
     _check_position_limits(bus, group, present, result)
-    firmware = group.read(Register.FIRMWARE_VERSION, ids)
-    result.fast_reads = all(_knows_fast_reads(servo, firmware) for servo in servos)
+    _check_firmware(bus, group.read(Register.FIRMWARE_VERSION, ids), servos, result)
     return result
 
 
@@ -83,16 +85,27 @@ def _identify(bus: str, client: ServoClient, servo: ExpectedServo, result: Audit
     return False
 
 
-def _knows_fast_reads(servo: ExpectedServo, firmware: dict[int, int]) -> bool:
-    least = servo.model.fast_read_firmware
-    return least is not None and firmware.get(servo.id, 0) >= least
+def _check_firmware(
+    bus: str, firmware: dict[int, int], servos: Sequence[ExpectedServo], result: AuditResult
+) -> None:
+    """What a servo can do depends on its firmware; a bus does what all of its servos can."""
+    for servo in servos:
+        version, least = firmware.get(servo.id, 0), servo.model.watchdog_firmware
+        result.fast_reads &= servo.model.supports_fast_read(version)
+        if version < least:
+            result.problems.append(
+                f"bus {bus} id {servo.id} ({servo.joint}) has firmware {version}, without the bus "
+                f"watchdog that stops it when the host dies; update it to {least} or later"
+            )
 
 
-def _wanted(register: Register, value: int) -> int:
+def _wanted(register: Register, value: int, servo: ExpectedServo) -> int:
     """What a setting should be, given what it is."""
+    if register is Register.PWM_SLOPE:
+        return PWM_SLOPE
     if register is Register.DRIVE_MODE:
         return value & ~int(FORBIDDEN_DRIVE_MODE)
-    return int(OperatingMode.POSITION) if register is Register.OPERATING_MODE else 0
+    return int(servo.mode) if register is Register.OPERATING_MODE else 0
 
 
 def _correct(
@@ -108,15 +121,17 @@ def _correct(
         Register.RETURN_DELAY_TIME,
         Register.DRIVE_MODE,
         Register.OPERATING_MODE,
+        Register.PWM_SLOPE,
     ):
-        values = group.read(register, ids)
-        for servo in servos:
+        concerned = [servo for servo in servos if register in servo.model.registers]
+        values = group.read(register, [servo.id for servo in concerned])
+        for servo in concerned:
             where = f"bus {bus} id {servo.id} ({servo.joint})"
             if servo.id not in values or servo.id not in torque:
                 result.problems.append(f"{where} stopped answering")
                 return
             value = values[servo.id]
-            wanted = _wanted(register, value)
+            wanted = _wanted(register, value, servo)
             if value == wanted:
                 continue
             if torque[servo.id]:

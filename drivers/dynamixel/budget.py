@@ -1,14 +1,15 @@
 """What a servo bus can carry: bytes, baud and adapter latency to time, as pure functions.
 
-One tick of a bus: a read request, the replies, the controller's compute time, then the writes.
-The read ends when the last reply byte is in the host, which the USB adapter's latency timer may
-hold back by its whole period. Ten bits a byte on the wire.
+One tick of a bus: a read request, the replies, the controller's compute time, the writes, and a
+read in idle time that nobody waits for. The group read ends when the last reply byte is in the
+host, which the USB adapter's latency timer may hold back by its whole period. Ten bits a byte on
+the wire.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from drivers.dynamixel.control_table import Register
+from drivers.dynamixel.blocks import HOT, IN_TURN, Block
 from drivers.dynamixel.protocol import FAST_BLOCK_OVERHEAD, PREFIX_SIZE
 from hil.errors import InputError
 
@@ -16,16 +17,11 @@ BITS_PER_BYTE = 10
 TURNAROUND_NS = 20_000
 """From the end of a packet to the first byte of its answer, a servo with Return Delay Time 0
 (assumed; 50 µs was reported for MX servos)."""
-HOT_SIZE = Register.PRESENT_POSITION.end - Register.PRESENT_CURRENT.address
-"""Bytes that every servo is asked for in every tick."""
-SLOW_SIZE = Register.PRESENT_TEMPERATURE.end - Register.PRESENT_CURRENT.address
-"""Bytes that one servo is asked for in a polling tick."""
-RARE_REGISTERS = 3
-"""Two-byte registers that are refreshed in a polling tick: P gain, D gain, goal PWM."""
 _INSTRUCTION_SIZE = PREFIX_SIZE + 3
 _STATUS_OVERHEAD = PREFIX_SIZE + 4
 _SYNC_HEAD = 4
-_BULK_ITEM = 5
+_READ_PARAMS = 4
+_GOAL_SIZE = 4
 
 
 def wire_time_ns(size: int, baud: int) -> int:
@@ -38,11 +34,6 @@ def sync_read_size(servos: int) -> int:
     return _INSTRUCTION_SIZE + _SYNC_HEAD + servos
 
 
-def bulk_read_size(servos: int) -> int:
-    """Bytes of a (fast) bulk read request."""
-    return _INSTRUCTION_SIZE + _BULK_ITEM * servos
-
-
 def sync_write_size(servos: int, length: int) -> int:
     """Bytes of a sync write of `length` data bytes a servo."""
     return _INSTRUCTION_SIZE + _SYNC_HEAD + servos * (1 + length)
@@ -53,6 +44,12 @@ def reply_size(lengths: Sequence[int], fast: bool) -> int:
     if fast:
         return PREFIX_SIZE + 1 + sum(FAST_BLOCK_OVERHEAD + length for length in lengths)
     return sum(_STATUS_OVERHEAD + length for length in lengths)
+
+
+def idle_time_ns(block: Block, baud: int) -> int:
+    """From the first byte of a read of one servo to the last one of its answer [ns]."""
+    size = _INSTRUCTION_SIZE + _READ_PARAMS + _STATUS_OVERHEAD + block.length
+    return wire_time_ns(size, baud) + TURNAROUND_NS
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,18 +77,20 @@ class BusTiming:
 
 @dataclass(frozen=True, slots=True)
 class BusBudget:
-    """One bus's worst tick: a tick in which a servo's slow registers are read and rewritten."""
+    """One bus's worst tick."""
 
     bus: str
     timing: BusTiming
     read_ns: int
     compute_ns: int
     write_ns: int
+    idle_ns: int
+    """The longest of the shortest reads in idle time."""
 
     @property
     def bus_ns(self) -> int:
         """Time that reading and writing take, the adapter's latency included [ns]."""
-        return self.read_ns + self.write_ns
+        return self.read_ns + self.write_ns + self.idle_ns
 
     @property
     def needed_ns(self) -> int:
@@ -119,14 +118,13 @@ class BusBudget:
 
 
 def bus_budget(bus: str, timing: BusTiming, servos: int, fast: bool, compute_ns: int) -> BusBudget:
-    """Budget of a bus's worst tick: one servo read at length, its rare registers refreshed."""
-    lengths = [HOT_SIZE] * (servos - 1) + [SLOW_SIZE]
-    reply = reply_size(lengths, fast)
-    write = sync_write_size(servos, 4) + RARE_REGISTERS * sync_write_size(1, 2)
+    """Budget of a bus on which all servos are read and written, and one is asked in idle time."""
+    reply = reply_size([HOT.length] * servos, fast)
     return BusBudget(
         bus=bus,
         timing=timing,
-        read_ns=timing.read_time_ns(bulk_read_size(servos), reply, servos, fast),
+        read_ns=timing.read_time_ns(sync_read_size(servos), reply, servos, fast),
         compute_ns=compute_ns,
-        write_ns=timing.write_time_ns(write),
+        write_ns=timing.write_time_ns(sync_write_size(servos, _GOAL_SIZE)),
+        idle_ns=max(idle_time_ns(block, timing.baud) for block in IN_TURN),
     )

@@ -1,7 +1,6 @@
-"""The hot path of one servo bus: one group read and one write a tick.
+"""The hot path of one servo bus: one group read, one write and one idle read a tick.
 
-The answer of a fast read is checked with one CRC and decoded as one numpy block; only when
-something is wrong is it taken apart servo by servo. Nothing here waits: `BusGroup` does.
+Nothing here waits: `BusGroup` does.
 """
 
 from collections.abc import Sequence
@@ -11,30 +10,24 @@ import numpy as np
 
 from drivers.dynamixel.budget import BusTiming
 from drivers.dynamixel.chain import Chain
+from drivers.dynamixel.fast_answer import FastAnswer
+from drivers.dynamixel.idle_read import IdleReader
+from drivers.dynamixel.plain_answer import PlainAnswer
 from drivers.dynamixel.port import Port
-from drivers.dynamixel.protocol import FastBlock, PacketReader, crc16, decode_fast_status
-from drivers.dynamixel.read_plan import (
-    FAULT,
-    HOT,
-    HOT_DTYPE,
-    SLOW,
-    Block,
-    BusServo,
-    ReadPlan,
-    plan_read,
-)
+from drivers.dynamixel.read_plan import BusServo, ReadPlan, plan_read
 from drivers.dynamixel.state_filler import StateFiller
 from drivers.dynamixel.states import ServoStates
 from drivers.dynamixel.write_plan import ServoWriter
 from hil.servo import ServoGoals
 
-POLL_EVERY = 10
-"""Ticks between longer reads; each takes one servo, in turn."""
+POLL_EVERY = 8
+"""Ticks between idle reads; each asks one servo, in turn."""
 LEAST_MARGIN_NS = 300_000
 """Waiting beyond wire, turnaround and adapter: USB jitter and the host's wake-up (assumed)."""
+MOST_PLANS = 100
+"""Plans that are kept; more orders than that come only where many servos fail."""
 FAST_TRIALS = 10
 """Fast reads without any answer after which plain ones are used, if fast ones never worked."""
-_FAST_START = 8
 
 
 @dataclass(slots=True)
@@ -47,7 +40,7 @@ class BusCounters:
     late: int = 0
     """Answers to the request of an earlier tick; those of the last one are taken, at their age."""
     stale: int = 0
-    """Servo samples that did not arrive in their tick."""
+    """Servo samples that did not arrive in their tick, or were not newer than those before."""
 
 
 class ServoBus:
@@ -62,9 +55,11 @@ class ServoBus:
         servos: Sequence[BusServo],
         states: ServoStates,
         fast: bool,
+        idle: IdleReader,
         margin_ns: int = LEAST_MARGIN_NS,
     ) -> None:
-        """`margin_ns` is how long to wait beyond the time that an answer should take."""
+        """`idle` asks in idle time; `margin_ns`: how long to wait beyond the time that an
+        answer should take."""
         self.name = name
         self.port = port
         self.fast = fast
@@ -77,43 +72,34 @@ class ServoBus:
         self._margin_ns = margin_ns
         self._chain = Chain(len(servos))
         self._filler = StateFiller(servos, states)
-        self._plans: dict[tuple[tuple[int, ...], Block, bool], ReadPlan] = {}
+        self._fast_answer = FastAnswer(self._filler)
+        self._plain_answer = PlainAnswer(self._filler)
+        self._plans: dict[tuple[tuple[int, ...], bool], ReadPlan] = {}
         self._plan: ReadPlan | None = None
-        self._late_plan: ReadPlan | None = None
-        self._late_sample_ns = self._sample_ns = 0
-        self._buffer = b""
-        self._reader = PacketReader()
-        self._turn = self._damaged = 0
-        self._tick = self._polled = 0
+        self._tick = 0
         self._fast_failures: int | None = 0
+        ids = [servo.id for servo in servos]
+        self._idle = idle
         joints = np.array([servo.joint for servo in servos], dtype=np.int64)
-        self._writer = ServoWriter([servo.id for servo in servos], joints)
+        self._writer = ServoWriter(ids, joints)
 
     def begin_read(self, now_ns: int) -> None:
         """Send this tick's request."""
+        left = self.port.read_available()
+        if left and self._idle.waiting:
+            self._look_for_idle_answer(left)
         members = self._chain.members()
-        self._expect_late()
         self._plan = None
-        self._turn = self._damaged = 0
         if not members:
             return
-        plan = self._plan = self._choose(members)
-        self._reader.reset()
+        plan = self._plan = self._plan_for(members)
         self.port.write(plan.packet)
         self.deadline_ns = now_ns + plan.timeout_ns
-        self._sample_ns = now_ns + plan.sample_delay_ns
-        self._filler.begin(self._sample_ns)
-
-    def _expect_late(self) -> None:
-        """A fast answer of which nothing could be used may still come; else start afresh."""
-        plan = self._plan
-        if plan is not None and plan.fast and not self._filler.heard:
-            self._late_plan, self._late_sample_ns = plan, self._sample_ns
-            self._buffer = self._buffer[-plan.reply_size :]
-            return
-        self._late_plan = None
-        self._buffer = b""
-        self.port.discard_input()
+        sample_ns = now_ns + plan.sample_delay_ns
+        if plan.fast:
+            self._fast_answer.begin(plan, sample_ns, left)
+        else:
+            self._plain_answer.begin(plan, sample_ns)
 
     def collect(self) -> bool:
         """Take what was received; True when nothing more is to come."""
@@ -121,21 +107,12 @@ class ServoBus:
         if plan is None:
             return True
         data = self.port.read_available()
-        if not plan.fast:
-            return self._collect_plain(plan, data)
-        self._buffer += data
-        if self._late_plan is not None:
-            self._take_late(self._late_plan)
-        while len(self._buffer) >= plan.reply_size:
-            start = self._buffer.find(plan.start)
-            end = start + plan.reply_size
-            if start < 0 or len(self._buffer) < end:
-                return False
-            if self._take_whole(plan, self._buffer[start:end]):
-                return True
-            self.counters.late += 1
-            self._buffer = self._buffer[end:]
-        return False
+        if not data:
+            return False
+        if self._idle.waiting:
+            self._look_for_idle_answer(data)
+        answer = self._fast_answer if plan.fast else self._plain_answer
+        return answer.take(data)
 
     def finish_read(self) -> None:
         """End the tick's read: save what arrived of an answer, note who did not."""
@@ -144,118 +121,82 @@ class ServoBus:
             self.counters.stale += len(self._servos)
             return
         heard = self._filler.heard
-        if plan.fast and not heard:
-            self._salvage(plan)
-        self.counters.stale += len(self._servos) - len(heard)
-        if self._chain.silent:
-            for place in heard:
+        answer = self._fast_answer if plan.fast else self._plain_answer
+        for place in self._fast_answer.heard_late:
+            self._chain.heard(place)
+        if len(heard) < len(plan.members) or answer.late:
+            self._finish_incomplete(plan, answer)
+        if self._chain.doubts:
+            for place in heard | self._filler.repeated:
                 self._chain.heard(place)
-        if len(heard) < len(plan.members):
-            self._note_missing(plan)
+        self._idle.forget()
+        self.counters.stale += len(self._servos) - len(heard)
+        if plan.fast and heard:
+            self._fast_failures = None
 
-    def write(self, goals: ServoGoals) -> None:
-        """Send the goals of this bus's servos: positions always, the rest where it changed."""
-        self.port.write(self._writer.encode(goals))
+    def write(self, goals: ServoGoals | None, spare_ns: int) -> None:
+        """Send the goals of this bus's servos: positions always, the rest where it changed.
 
-    def forget_written(self) -> None:
-        """Send everything with the next write (after a reboot or arming)."""
+        Behind them, or alone, goes a read in idle time, if one is due and `spare_ns` of time are
+        left until the next tick.
+        """
+        data = b"" if goals is None else self._writer.encode(goals)
+        self._tick += 1
+        if self._tick % POLL_EVERY == 0 or self._filler.suspects or self._chain.doubts:
+            needed_ns = self._timing.write_time_ns(len(data)) + self._idle.duration_ns
+            if needed_ns <= spare_ns:
+                data += self._idle_request()
+        if data:
+            self.port.write(data)
+
+    def arm(self, armed: bool) -> None:
+        """Torque was switched on or off: judge the servos by it, and send everything anew."""
+        self._idle.forget()
+        self._filler.arm(armed)
         self._writer.forget()
 
-    def _choose(self, members: tuple[int, ...]) -> ReadPlan:
-        """The plan of this tick: in a polling tick, the servo whose turn it is goes to the end."""
-        self._tick += 1
-        unexplained = self._filler.unexplained()
-        due = unexplained is not None or self._tick % POLL_EVERY == 0
-        if not due or any(place in members for place in self._chain.silent):
-            return self._plan_for(members, HOT)
-        place = unexplained
-        if place is None:
-            self._polled += 1
-            place = sorted(members)[self._polled % len(members)]
-        self._writer.refresh(place)
-        block = FAULT if place in self._filler.alerting else SLOW
-        return self._plan_for((*(p for p in members if p != place), place), block)
-
-    def _plan_for(self, members: tuple[int, ...], last: Block) -> ReadPlan:
-        key = (members, last, self.fast)
+    def _plan_for(self, members: tuple[int, ...]) -> ReadPlan:
+        key = members, self.fast
         if key not in self._plans:
+            if len(self._plans) >= MOST_PLANS:
+                self._plans.clear()
             servos = [self._servos[place] for place in members]
-            self._plans[key] = plan_read(
-                members, servos, last, self.fast, self._timing, self._margin_ns
-            )
+            self._plans[key] = plan_read(members, servos, self.fast, self._timing, self._margin_ns)
         return self._plans[key]
 
-    def _take_late(self, plan: ReadPlan) -> None:
-        """Take the last tick's answer for what it is: older, and better than none."""
-        start = self._buffer.find(plan.start)
-        end = start + plan.reply_size
-        if start < 0 or len(self._buffer) < end:
+    def _idle_request(self) -> bytes:
+        """The idle read of this tick: of a servo that is suspected, lost, or whose turn it is."""
+        suspects = self._filler.suspects
+        if suspects:
+            return self._idle.request(min(suspects))
+        lost = self._chain.next_lost()
+        if lost is not None:
+            return self._idle.request(lost)
+        return self._idle.next_request() if self._tick % POLL_EVERY == 0 else b""
+
+    def _look_for_idle_answer(self, data: bytes) -> None:
+        answer = self._idle.take(data)
+        if answer is not None:
+            self._filler.take_idle(answer)
+            self._writer.compare(answer.place, answer.found)
+            self._chain.heard(answer.place)
+
+    def _finish_incomplete(self, plan: ReadPlan, answer: FastAnswer | PlainAnswer) -> None:
+        """Save what can be saved and count what went wrong; blame the first that was silent."""
+        answer.finish()
+        counters = self.counters
+        counters.late += answer.late
+        counters.crc_errors += answer.damaged
+        answered = self._filler.heard | self._filler.repeated
+        missing = [place for place in plan.members if place not in answered]
+        if not missing:
             return
-        self._filler.begin(self._late_sample_ns)
-        if self._take_whole(plan, self._buffer[start:end]) and self._filler.heard:
-            self.counters.late += 1
-            self._buffer = self._buffer[end:]
-            for place in self._filler.heard:
-                self._chain.heard(place)
-        self._late_plan = None
-        self._filler.begin(self._sample_ns)
+        self._count_fast_failure(plan)
+        if not (plan.fast and answer.damaged):
+            counters.timeouts += 1
+            self._chain.missed(missing[0], bool(answered))
 
-    def _take_whole(self, plan: ReadPlan, raw: bytes) -> bool:
-        """Decode a fast answer that is as long as it should be; False if it is an earlier one.
-
-        One that is damaged or carries alerts is left to `finish_read`.
-        """
-        if crc16(raw[:-2]) != raw[-2] | raw[-1] << 8:
-            return True
-        count = len(plan.ids) if plan.last is HOT else len(plan.ids) - 1
-        blocks = np.frombuffer(raw, HOT_DTYPE, count, _FAST_START)
-        if blocks["id"].tobytes() != plan.id_bytes[:count]:
-            return False
-        if self._filler.alerting or blocks["error"].any():
-            return True
-        self._filler.take_all(plan, blocks)
-        if plan.last is not HOT:
-            tail = raw[-(plan.last.length + 4) : -2]
-            self._filler.take(plan, FastBlock(tail[0], tail[1], tail[2:]))
-        self._fast_failures = None
-        return True
-
-    def _collect_plain(self, plan: ReadPlan, data: bytes) -> bool:
-        """Take the status packets of a plain read, in the order of the chain."""
-        errors = self._reader.crc_errors
-        packets = self._reader.feed(data)
-        self._damaged += self._reader.crc_errors - errors
-        self.counters.crc_errors += self._reader.crc_errors - errors
-        for packet in packets:
-            if not packet.is_status or packet.id not in plan.ids:
-                continue
-            turn = plan.ids.index(packet.id)
-            # The first of the chain begins anew: what came before it was a late answer.
-            if turn == 0 or self._turn <= turn <= self._turn + self._damaged:
-                self._filler.take(plan, FastBlock(packet.error, packet.id, packet.data))
-                self._turn = turn + 1
-            else:
-                self.counters.late += 1
-        return self._turn == len(plan.ids)
-
-    def _salvage(self, plan: ReadPlan) -> None:
-        """Take the blocks of a fast answer that can be trusted."""
-        start = max(0, self._buffer.find(plan.start))
-        blocks = decode_fast_status(self._buffer[start:], plan.lengths)
-        for block, servo_id in zip(blocks, plan.ids, strict=False):
-            if block.id == servo_id:
-                self._filler.take(plan, block)
-        if blocks:
-            self._fast_failures = None
-        elif self._fast_failures is not None:
+    def _count_fast_failure(self, plan: ReadPlan) -> None:
+        if plan.fast and self._fast_failures is not None and not self._filler.heard:
             self._fast_failures += 1
             self.fast = self._fast_failures < FAST_TRIALS
-
-    def _note_missing(self, plan: ReadPlan) -> None:
-        """Count the failure; if it was silence, blame the first servo that did not answer."""
-        if plan.fast and len(self._buffer) >= plan.reply_size:
-            self.counters.crc_errors += 1
-            return
-        heard = self._filler.heard
-        self.counters.timeouts += 1
-        self._chain.missed(next(place for place in plan.members if place not in heard))

@@ -30,7 +30,13 @@ class BusGroup:
         for bus in self.buses:
             bus.finish_read()
 
-    def write(self, goals: ServoGoals) -> None:
-        """Send the goals on every bus."""
+    def write(self, goals: ServoGoals | None, spare_ns: int) -> None:
+        """Send the goals, if there are any, on every bus; `spare_ns` are left until the next
+        tick."""
         for bus in self.buses:
-            bus.write(goals)
+            bus.write(goals, spare_ns)
+
+    def arm(self, armed: bool) -> None:
+        """Torque was switched on or off on every bus."""
+        for bus in self.buses:
+            bus.arm(armed)

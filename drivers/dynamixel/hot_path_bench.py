@@ -13,8 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 from dynamixel_sdk import GroupSyncRead, GroupSyncWrite, PortHandler, Protocol2PacketHandler
 
+from drivers.dynamixel.blocks import HOT, WHOLE
 from drivers.dynamixel.budget import BusTiming
 from drivers.dynamixel.bus import POLL_EVERY, ServoBus
+from drivers.dynamixel.control_table import REALTIME_TICK_MODULUS
+from drivers.dynamixel.idle_read import IdleReader
 from drivers.dynamixel.protocol import (
     FastBlock,
     Instruction,
@@ -22,13 +25,14 @@ from drivers.dynamixel.protocol import (
     encode_fast_status,
     encode_status,
 )
-from drivers.dynamixel.read_plan import HOT, BusServo
+from drivers.dynamixel.read_plan import FAST_DTYPE, FAST_START, BusServo
 from drivers.dynamixel.states import ServoStates
 from hil.servo import ServoGoals
 
 REPEATS = 7
 CYCLES = 300
 GOAL_ADDRESS, GOAL_SIZE = 116, 4
+TIMING = BusTiming(baud=4_000_000, latency_timer_ns=1_000_000, usb_transfer_ns=125_000)
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,9 +51,13 @@ class Row:
 
 
 class MemoryPort:
-    """Answers group reads at once; swallows writes. Looks like `drivers.dynamixel.port.Port`."""
+    """Answers group reads at once; swallows writes. Looks like `drivers.dynamixel.port.Port`.
 
-    def __init__(self) -> None:
+    Behind a silent servo nobody answers, as on a real chain.
+    """
+
+    def __init__(self, silent_id: int | None = None) -> None:
+        self._silent_id = silent_id
         self.name = "memory"
         self.baud = 4_000_000
         self.stream = self
@@ -59,10 +67,23 @@ class MemoryPort:
     def write(self, data: bytes) -> int:
         """Take a request and hold its answer ready."""
         request = bytes(data)
+        if self._silent_id is not None:
+            milliseconds = time.monotonic_ns() // 1_000_000
+            self._received = _answer(request, milliseconds, self._silent_id)
+            return len(request)
         if request not in self._answers:
             self._answers[request] = _answer(request)
         self._received = self._answers[request]
         return len(request)
+
+    @property
+    def in_waiting(self) -> int:
+        """Bytes of the answer that are left."""
+        return len(self._received)
+
+    def fileno(self) -> int:
+        """There is no file."""
+        return -1
 
     def read_available(self) -> bytes:
         """The whole answer."""
@@ -101,22 +122,25 @@ class MemoryHandler(PortHandler):  # type: ignore[misc]  # the SDK has no types
         return self._memory.write(bytes(packet))
 
 
-def _answer(request: bytes) -> bytes:
-    """What servos answer: every data byte is 0x11, so nothing needs stuffing."""
+def _answer(request: bytes, milliseconds: int = 0, silent_id: int | None = None) -> bytes:
+    """What servos answer: but for their clocks every byte is 0, so nothing needs stuffing."""
     reader = PacketReader()
     blocks: list[FastBlock] = []
     fast = False
     for packet in reader.feed(request):
         params = packet.params
-        fast = packet.instruction in (Instruction.FAST_SYNC_READ, Instruction.FAST_BULK_READ)
+        fast = packet.instruction == Instruction.FAST_SYNC_READ
         if packet.instruction in (Instruction.SYNC_READ, Instruction.FAST_SYNC_READ):
-            data = b"\x11" * int.from_bytes(params[2:4], "little")
+            tick = (milliseconds % REALTIME_TICK_MODULUS).to_bytes(2, "little")
+            data = tick + bytes(int.from_bytes(params[2:4], "little") - 2)
             blocks = [FastBlock(0, servo_id, data) for servo_id in params[4:]]
-        elif packet.instruction in (Instruction.BULK_READ, Instruction.FAST_BULK_READ):
-            items = [params[i : i + 5] for i in range(0, len(params), 5)]
-            blocks = [FastBlock(0, item[0], b"\x11" * item[3]) for item in items]
+        elif packet.instruction == Instruction.READ:
+            blocks = [FastBlock(0, packet.id, bytes(int.from_bytes(params[2:4], "little")))]
+    ids = [block.id for block in blocks]
+    heard = blocks[: ids.index(silent_id)] if silent_id in ids else blocks
     if fast:
-        return encode_fast_status(blocks)
+        return encode_fast_status(blocks)[: FAST_START + len(heard) * FAST_DTYPE.itemsize]
+    blocks = heard
     return b"".join(encode_status(block.id, block.error, block.data) for block in blocks)
 
 
@@ -127,9 +151,9 @@ def _signed(value: int, bits: int) -> int:
 def _ours(servos: int) -> tuple[Callable[[], None], Callable[[], None]]:
     port = MemoryPort()
     states = ServoStates.empty(servos)
-    timing = BusTiming(4_000_000, 1_000_000, 125_000)
     members = [BusServo(index + 1, index) for index in range(servos)]
-    bus = ServoBus("memory", port, timing, members, states, fast=True)  # type: ignore[arg-type]
+    idle = IdleReader([servo.id for servo in members], (WHOLE,), TIMING.baud)
+    bus = ServoBus("memory", port, TIMING, members, states, True, idle)  # type: ignore[arg-type]
     goals = ServoGoals(
         position=np.full(servos, 2048),
         p_gain=np.full(servos, 800),
@@ -144,11 +168,12 @@ def _ours(servos: int) -> tuple[Callable[[], None], Callable[[], None]]:
 
     def write() -> None:
         goals.position[:] = 2049
-        bus.write(goals)
+        bus.write(goals, 1_000_000_000)
 
-    for _ in range(POLL_EVERY * servos):
+    for _ in range(POLL_EVERY * servos + 1):
         read()
-    if not states.valid.all() or bus.counters.stale:
+        write()
+    if not np.isfinite(states.voltage).all() or bus.counters.stale:
         raise RuntimeError("the in-memory bus was not read as it should be")
     return read, write
 

@@ -1,11 +1,18 @@
 """A serial port: opened exclusively, read and written without blocking, waited for by the Clock."""
 
 import sys
+from contextlib import suppress
+from pathlib import Path
 
 import serial
 from serial.tools import list_ports
 
 from hil.errors import BackendError, PortError
+
+USB_SERIAL = Path("/sys/bus/usb-serial/devices")
+"""Where Linux shows the latency timers of USB serial adapters."""
+BY_ID = Path("/dev/serial/by-id")
+"""Names of serial ports that tell the adapter, not the order of plugging in."""
 
 
 class Port:
@@ -18,8 +25,9 @@ class Port:
         self.baud = baud
         self.stream = _open(name, url, baud)
         """The pyserial object, for `Clock.wait_readable`."""
-        self.low_latency = _set_low_latency(self.stream)
-        """Whether the driver was told to hand bytes over at once."""
+        _set_low_latency(self.stream)
+        self.latency_timer_ms = read_latency_timer_ms(url)
+        """Of its USB adapter, after it was told to be fast; None where the system does not say."""
         self.sent_bytes = 0
         self.received_bytes = 0
 
@@ -64,6 +72,13 @@ class Port:
         return BackendError(f"port {self.name} ({self.url}) is lost: {error}")
 
 
+def _stable_name(device: str) -> str:
+    """The name by which an adapter is found again after it was plugged in anew, if there is one."""
+    links = BY_ID.iterdir() if BY_ID.is_dir() else ()
+    target = Path(device).resolve()
+    return next((str(link) for link in links if link.resolve() == target), device)
+
+
 def _open(name: str, url: str, baud: int) -> serial.Serial:
     try:
         stream = serial.serial_for_url(
@@ -73,20 +88,36 @@ def _open(name: str, url: str, baud: int) -> serial.Serial:
             stream.exclusive = True
         stream.open()
     except (OSError, ValueError, serial.SerialException) as error:
-        found = ", ".join(sorted(port.device for port in list_ports.comports())) or "none"
+        found = ", ".join(sorted(_stable_name(port.device) for port in list_ports.comports()))
         raise PortError(
-            f"{name}: cannot open port {url!r}: {error}; serial ports found: {found}"
+            f"{name}: cannot open port {url!r}: {error}; serial ports found: {found or 'none'}"
         ) from error
     return stream
 
 
-def _set_low_latency(stream: serial.Serial) -> bool:
-    """Ask the USB driver for low latency; ports without that (ptys, virtual ones) say no."""
+def _set_low_latency(stream: serial.Serial) -> None:
+    """Ask the USB driver for low latency; ptys and virtual ports have no such thing."""
     setter = getattr(stream, "set_low_latency_mode", None)
-    if setter is None:
-        return False
+    if setter is not None:
+        with suppress(OSError, ValueError, NotImplementedError):
+            setter(True)
+
+
+def read_latency_timer_ms(path: str, root: Path = USB_SERIAL) -> int | None:
+    """Latency timer of the USB adapter behind a device path, as the kernel's driver has it [ms]."""
     try:
-        setter(True)
-    except (OSError, ValueError, NotImplementedError):
-        return False
-    return True
+        return int((root / Path(path).resolve().name / "latency_timer").read_text())
+    except (OSError, ValueError):
+        return None
+
+
+def latency_warning(port: Port, wanted_ms: int) -> str | None:
+    """What to do about an adapter that holds answers back for longer than it should."""
+    found_ms = port.latency_timer_ms
+    if found_ms is None or found_ms <= wanted_ms:
+        return None
+    device = Path(port.url).resolve().name
+    return (
+        f"port {port.name} ({port.url}) holds answers back for {found_ms} ms, {wanted_ms} ms are "
+        f"planned: echo {wanted_ms} | sudo tee {USB_SERIAL / device / 'latency_timer'}"
+    )

@@ -33,14 +33,25 @@ class BusPower:
         self._require_all(positions, "its position")
         return positions
 
-    def prepare(self, positions: Mapping[int, int], p_gains: Mapping[int, int]) -> None:
-        """Put goals at the present positions and gains in place. Raises BackendError."""
+    def prepare(
+        self,
+        positions: Mapping[int, int],
+        p_gains: Mapping[int, int],
+        currents: Mapping[int, int] | None = None,
+    ) -> None:
+        """Put goals at the present positions and gains in place. Raises BackendError.
+
+        `currents`: goals of servos in current mode and limits of those in current-based position
+        mode; a change of mode leaves them at the largest there is.
+        """
         expected: dict[Register, dict[int, int]] = {
             register: dict.fromkeys(self._ids, 0) for register in _ZEROED
         }
         expected[Register.POSITION_P_GAIN] = dict(p_gains)
         expected[Register.GOAL_PWM] = dict.fromkeys(self._ids, PWM_FULL)
         expected[Register.GOAL_POSITION] = dict(positions)
+        if currents is not None:
+            expected[Register.GOAL_CURRENT] = dict(currents)
         for register, values in expected.items():
             self._write_verified(register, values)
 
@@ -66,9 +77,14 @@ class BusPower:
                 return True
         return False
 
-    def hold(self, goals: Mapping[int, int]) -> bool:
-        """Leave torque on at the last goals, without the watchdog; whether it was read back."""
+    def hold(self, goals: Mapping[int, int], currents: Mapping[int, int] | None = None) -> bool:
+        """Leave torque on at the last goals, without the watchdog; whether it was read back.
+
+        `currents` as in `prepare`: a servo in current mode has no place to hold, and gets none.
+        """
         self._group.write_all(Register.BUS_WATCHDOG, self._ids, 0)
+        if currents is not None:
+            self._group.write(Register.GOAL_CURRENT, currents)
         self._group.write(Register.GOAL_POSITION, goals)
         return self._group.read(Register.GOAL_POSITION, self._ids) == dict(goals)
 

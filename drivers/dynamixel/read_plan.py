@@ -1,9 +1,8 @@
 """The group read of one tick: its request bytes, and its answer taken apart all at once.
 
-Every servo is asked for the contiguous block Present Current, Velocity and Position (126 to 135).
-Slow registers ride along: in some ticks the last servo of the chain is asked for a longer block
-that begins or ends with the same ten bytes. That costs 11 bytes in one tick of ten, where indirect
-addressing would cost 5 bytes a servo in every tick and a set-up that each reboot undoes.
+Every servo is asked for the contiguous block Realtime Tick to Present Position (120 to 135): what
+it measures, and when, by its own clock. Everything slower is read in idle time (`idle_read`).
+Indirect addressing would save 4 bytes a servo, and needs a set-up that each reboot undoes.
 """
 
 from collections.abc import Sequence
@@ -11,52 +10,27 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from drivers.dynamixel.blocks import HOT
 from drivers.dynamixel.budget import BusTiming, reply_size, wire_time_ns
-from drivers.dynamixel.control_table import Register
-from drivers.dynamixel.protocol import (
-    FastBlock,
-    encode_bulk_read,
-    encode_sync_read,
-    fast_status_start,
-)
+from drivers.dynamixel.protocol import encode_sync_read, fast_status_start
 from hil.interface import Ints
 
-
-@dataclass(frozen=True, slots=True)
-class Block:
-    """A contiguous run of registers."""
-
-    address: int
-    length: int
-
-    @classmethod
-    def spanning(cls, first: Register, last: Register) -> "Block":
-        """From one register to another, both included."""
-        return cls(first.address, last.end - first.address)
-
-    def value(self, register: Register, data: bytes) -> int:
-        """A register's value in the block's data."""
-        start = register.address - self.address
-        return register.spec.decode(data[start : start + register.size])
-
-
-HOT = Block.spanning(Register.PRESENT_CURRENT, Register.PRESENT_POSITION)
-SLOW = Block.spanning(Register.PRESENT_CURRENT, Register.PRESENT_TEMPERATURE)
-"""Adds voltage and temperature."""
-FAULT = Block.spanning(Register.HARDWARE_ERROR_STATUS, Register.PRESENT_TEMPERATURE)
-"""Adds the cause of an alert."""
-
-HOT_DTYPE = np.dtype(
+FAST_DTYPE = np.dtype(
     [
-        ("error", "u1"),
-        ("id", "u1"),
+        ("error_id", "<u2"),
+        ("tick", "<u2"),
+        ("moving", "u1"),
+        ("moving_status", "u1"),
+        ("pwm", "<i2"),
         ("current", "<i2"),
         ("velocity", "<i4"),
         ("position", "<i4"),
         ("crc", "<u2"),
     ]
 )
-"""One fast block of the hot registers."""
+"""One servo's part of a fast answer."""
+FAST_START = 8
+"""Bytes of a fast answer before its first block."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,11 +50,12 @@ class ReadPlan:
     """Places of the servos on the bus, in the order of their answers."""
     ids: tuple[int, ...]
     id_bytes: bytes
-    joints: Ints
-    """Their indices in joint order."""
-    last: Block
-    """What the last servo is asked for; HOT in most ticks."""
-    lengths: tuple[int, ...]
+    unmarked: bytes
+    """Error byte 0 and id of every member, as they come in fast answers."""
+    places: slice | Ints
+    """The members as an index of arrays by place."""
+    joints: slice | Ints
+    """Their joints as an index of arrays in joint order."""
     fast: bool
     packet: bytes
     start: bytes
@@ -91,32 +66,32 @@ class ReadPlan:
     sample_delay_ns: int
     """From sending the request to the servos' sampling."""
 
+    @property
+    def lengths(self) -> tuple[int, ...]:
+        """Data bytes asked of each servo."""
+        return (HOT.length,) * len(self.ids)
+
 
 def plan_read(
     members: tuple[int, ...],
     servos: Sequence[BusServo],
-    last: Block,
     fast: bool,
     timing: BusTiming,
     margin_ns: int,
 ) -> ReadPlan:
     """The read of `members`, which are `servos`; `margin_ns` is added to the timeout."""
     ids = tuple(servo.id for servo in servos)
-    lengths = (HOT.length,) * (len(ids) - 1) + (last.length,)
-    if last is HOT:
-        packet = encode_sync_read(ids, HOT.address, HOT.length, fast)
-    else:
-        items = [(servo_id, HOT.address, HOT.length) for servo_id in ids[:-1]]
-        packet = encode_bulk_read([*items, (ids[-1], last.address, last.length)], fast)
+    lengths = (HOT.length,) * len(ids)
+    packet = encode_sync_read(ids, HOT.address, HOT.length, fast)
     size = reply_size(lengths, fast)
     timeout = timing.read_time_ns(len(packet), size, len(ids), fast) + margin_ns
     return ReadPlan(
         members=members,
         ids=ids,
         id_bytes=bytes(ids),
-        joints=np.array([servo.joint for servo in servos], dtype=np.int64),
-        last=last,
-        lengths=lengths,
+        unmarked=b"".join(bytes((0, servo_id)) for servo_id in ids),
+        places=_index(members),
+        joints=_index([servo.joint for servo in servos]),
         fast=fast,
         packet=packet,
         start=fast_status_start(lengths),
@@ -126,10 +101,11 @@ def plan_read(
     )
 
 
-def hot_values(block: Block, servo: FastBlock) -> tuple[int, int, int]:
-    """Present current, velocity and position in a block of any kind."""
-    return (
-        block.value(Register.PRESENT_CURRENT, servo.data),
-        block.value(Register.PRESENT_VELOCITY, servo.data),
-        block.value(Register.PRESENT_POSITION, servo.data),
-    )
+def _index(numbers: Sequence[int]) -> slice | Ints:
+    """An index of arrays; a slice, which is faster, where the numbers are consecutive."""
+    first, last = numbers[0], numbers[-1]
+    if list(numbers) == list(range(first, last + 1)):
+        return slice(first, last + 1)
+    if list(numbers) == list(range(first, last - 1, -1)):
+        return slice(first, last - 1 if last else None, -1)
+    return np.array(numbers, dtype=np.int64)

@@ -6,9 +6,6 @@ import numpy as np
 
 from hil.interface import Bools, Floats, Ints
 
-ALERT_UNKNOWN = 0x80
-"""In `error`: the servo raises its alert bit and the cause is not read yet."""
-
 
 @dataclass(slots=True)
 class ServoStates:
@@ -25,7 +22,7 @@ class ServoStates:
     temperature: Floats
     """[°C], NaN where never read."""
     error: Ints
-    """`HardwareError` bits, or ALERT_UNKNOWN."""
+    """`HardwareError` and `JointError` bits."""
     valid: Bools
     """Read in this tick."""
     time_ns: Ints

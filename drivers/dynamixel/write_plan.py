@@ -1,13 +1,14 @@
 """The writes of one tick as bytes: goal positions always, gains and PWM where they changed.
 
 Nobody acknowledges a sync write, so what was sent once may have been lost: registers that rarely
-change are also refreshed servo by servo, in the ticks in which that servo is polled.
+change are compared with what a servo says in idle time that it has, and sent again if need be.
 """
 
 from collections.abc import Sequence
 
 import numpy as np
 
+from drivers.dynamixel.blocks import SlowRegisters
 from drivers.dynamixel.control_table import Register
 from drivers.dynamixel.protocol import BROADCAST_ID, Instruction, encode_instruction
 from hil.interface import Ints
@@ -30,19 +31,21 @@ class _RareRegister:
         self._items = np.zeros(len(ids), _GAIN_DTYPE)
         self._items["id"] = ids
         self._sent = np.full(len(ids), _NEVER, dtype=np.int64)
-        self._due = True
 
-    def forget(self, place: int | None = None) -> None:
-        """Send the value again, of one servo or of all."""
-        self._sent[slice(None) if place is None else place] = _NEVER
-        self._due = True
+    def forget(self) -> None:
+        """Send every servo's value again."""
+        self._sent[:] = _NEVER
+
+    def compare(self, place: int, found: int | None) -> None:
+        """Send one servo's value again if it is found to have another."""
+        if found is not None and found != self._sent[place]:
+            self._sent[place] = _NEVER
 
     def encode(self, values: Ints) -> bytes:
         """A sync write of the changed values, empty if there are none."""
         changed = values != self._sent
-        if not (self._due or changed.any()):
+        if not changed.any():
             return b""
-        self._due = False
         self._sent[:] = values
         self._items["value"] = values
         return encode_instruction(
@@ -61,23 +64,27 @@ class ServoWriter:
         self._p_gain = _RareRegister(Register.POSITION_P_GAIN, ids)
         self._d_gain = _RareRegister(Register.POSITION_D_GAIN, ids)
         self._pwm = _RareRegister(Register.GOAL_PWM, ids)
+        self._current = _RareRegister(Register.GOAL_CURRENT, ids)
 
-    def refresh(self, place: int) -> None:
-        """Send the rarely written registers of one servo with the next write."""
-        for register in (self._p_gain, self._d_gain, self._pwm):
-            register.forget(place)
+    def compare(self, place: int, found: SlowRegisters) -> None:
+        """Send again with the next write what a servo does not have as it should."""
+        self._p_gain.compare(place, found.p_gain)
+        self._d_gain.compare(place, found.d_gain)
+        self._pwm.compare(place, found.goal_pwm)
 
     def forget(self) -> None:
         """Send everything with the next write."""
-        for register in (self._p_gain, self._d_gain, self._pwm):
+        for register in (self._p_gain, self._d_gain, self._pwm, self._current):
             register.forget()
 
     def encode(self, goals: ServoGoals) -> bytes:
         """Packets to send, in the order in which servos should act on them."""
         joints = self._joints
         self._goals["value"] = goals.position[joints]
+        current = b"" if goals.current is None else self._current.encode(goals.current[joints])
         return (
-            self._p_gain.encode(goals.p_gain[joints])
+            current
+            + self._p_gain.encode(goals.p_gain[joints])
             + self._d_gain.encode(goals.d_gain[joints])
             + self._pwm.encode(goals.pwm_limit[joints])
             + encode_instruction(

@@ -5,6 +5,7 @@ from typing import Annotated
 from typer import Option
 
 from hil.cli import options
+from hil.fault_spec import gather_faults
 
 EPILOG = """[bold]Example[/bold]
 
@@ -17,9 +18,16 @@ def emulate(
     rate: options.Rate = None,
     seed: options.Seed = 0,
     overrides: options.Overrides = None,
+    fault: options.Faults = None,
+    fault_plan: options.FaultPlan = None,
     as_json: Annotated[bool, Option("--json", help="Print the ports as one line of JSON.")] = False,
 ) -> None:
-    """Serve a virtual robot's servo buses and sensor boards until stopped with Ctrl-C."""
+    """Serve a virtual robot's servo buses and sensor boards until stopped with Ctrl-C.
+
+    T = 0 of the faults is when it is ready; more can be injected on its control socket.
+    """
     from hil.compose import serve_virtual
 
-    serve_virtual(robot, rate, seed, tuple(overrides or ()), as_json)
+    serve_virtual(
+        robot, rate, seed, tuple(overrides or ()), as_json, gather_faults(fault or (), fault_plan)
+    )

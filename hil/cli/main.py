@@ -7,7 +7,23 @@ import typer
 from typer.core import TyperGroup
 
 from hil import __version__
-from hil.cli import bench, compare, emulate, export, plot, study, walk
+from hil.cli import (
+    bench,
+    check,
+    compare,
+    emulate,
+    export,
+    gains,
+    identify,
+    jog,
+    monitor,
+    plot,
+    relax,
+    scan,
+    setup,
+    study,
+    walk,
+)
 from hil.errors import StrideError
 
 INTERRUPTED = 130
@@ -38,10 +54,18 @@ app = typer.Typer(
 )
 app.command(epilog=walk.EPILOG)(walk.walk)
 app.command(epilog=emulate.EPILOG)(emulate.emulate)
+app.command(epilog=scan.EPILOG)(scan.scan)
+app.command(epilog=jog.EPILOG)(jog.jog)
+app.command(epilog=setup.EPILOG)(setup.setup)
+app.command(epilog=check.EPILOG)(check.check)
+app.command(epilog=monitor.EPILOG)(monitor.monitor)
+app.command(epilog=relax.EPILOG)(relax.relax)
 app.command(epilog=compare.EPILOG)(compare.compare)
 app.command(epilog=plot.EPILOG)(plot.plot)
 app.command(epilog=export.EPILOG)(export.export)
-app.command()(bench.bench)
+app.command(epilog=identify.EPILOG)(identify.identify)
+app.add_typer(bench.app)
+app.command(epilog=gains.EPILOG)(gains.gains)
 app.add_typer(study.app)
 
 

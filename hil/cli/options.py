@@ -46,6 +46,17 @@ Ball = Annotated[
     list[str] | None,
     Option(metavar="KG,VX,VY,VZ@T", help="Ball thrown at the trunk, m/s at impact; repeatable."),
 ]
+Faults = Annotated[
+    list[str] | None,
+    Option(
+        "--fault",
+        metavar="PLANE:NAME:KIND[=V][@T[+DT]]",
+        help="Something goes wrong in a virtual robot (docs/faults.md); repeatable.",
+    ),
+]
+FaultPlan = Annotated[
+    Path | None, Option(metavar="FILE.yaml", help="More faults, a list of texts under `faults`.")
+]
 Estimator = Annotated[EstimatorName | None, Option(help="Sensors only, or the simulation's truth.")]
 Pd = Annotated[PdName | None, Option(help="Integration of a torque robot's PD.")]
 Stabilizer = Annotated[

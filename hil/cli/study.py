@@ -6,6 +6,7 @@ from typer import Option, Typer
 
 from hil.cli import options, study_options
 from hil.cli.study_conduct import checked, conduct, resolved_request
+from hil.cli.study_robustness import robustness
 
 EPILOG = """[bold]Examples[/bold]
 
@@ -14,6 +15,8 @@ stride study pushes human --pd implicit --direction left --force-step 50 --force
 stride study speeds minibiped --backend mujoco --sagittal 0 --sagittal 0.2
 
 stride study rates human --jobs 2
+
+stride study robustness minibiped --condition forward --seeds 3
 
 An interrupted study goes on where it stopped: give the same command again.
 """
@@ -25,6 +28,7 @@ app = Typer(
     epilog=EPILOG,
     help="Many walks in parallel, one table: CSV, figure, and every case that is done is kept.",
 )
+app.command()(robustness)
 
 
 @app.command()
@@ -98,6 +102,7 @@ def speeds(
         Option("--coronal", "-c", help="Speed in m/s, left positive; repeatable."),
     ] = None,
     duration: Annotated[float, Option(help="Walking time at each speed in s.")] = 20.0,
+    steps: study_options.Steps = None,
     backend: study_options.Backend = None,
     rate: options.Rate = None,
     pd: options.Pd = None,
@@ -125,6 +130,7 @@ def speeds(
         sagittal=tuple(sagittal or along)[: 2 if quick else None],
         coronal=tuple(coronal or across)[: 1 if quick else None],
         duration_s=3.0 if quick else duration,
+        steps=None if quick else steps,
     )
     conduct(study, out, jobs, as_json=as_json)
 
@@ -196,6 +202,7 @@ def rates(
         list[str] | None, Option(help="straight, cycle, pushed; repeatable.", show_default="all")
     ] = None,
     duration: Annotated[float, Option(help="Walking time in s.")] = 20.0,
+    steps: study_options.Steps = None,
     speed: study_options.Speed = None,
     backend: study_options.Backend = None,
     estimator: options.Estimator = None,
@@ -223,6 +230,7 @@ def rates(
         pds=pds[:1] if quick else pds,
         scenarios=tuple(scenario or SCENARIOS),
         duration_s=4.0 if quick else duration,
+        steps=None if quick else steps,
     )
     conduct(study, out, jobs, as_json=as_json)
 
@@ -244,6 +252,13 @@ def stabilizer(
     ankle: Annotated[
         list[str] | None,
         Option(help="Ankle rule: none, guards, limit; repeatable.", show_default="guards, limit"),
+    ] = None,
+    cell_noise: Annotated[
+        float, Option(help="White noise on every corner force of the estimate in N.", min=0.0)
+    ] = 0.0,
+    push_rate: Annotated[
+        list[int] | None,
+        Option(help="Also walk at this rate, pushed sideways; repeatable.", min=20),
     ] = None,
     seed: options.Seed = 0,
     overrides: options.Overrides = None,
@@ -269,5 +284,7 @@ def stabilizer(
         model_solver=model_solver,
         ankles=ankles[-1:] if quick else ankles,
         probe_s=3.0 if quick else 10.0,
+        cell_noise_n=cell_noise,
+        push_rates=tuple(push_rate or ()),
     )
     conduct(study, out, jobs, as_json=as_json)

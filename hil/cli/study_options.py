@@ -15,6 +15,9 @@ Speed = Annotated[float | None, Option(help="Sagittal speed in m/s.", show_defau
 Stabilizer = Annotated[
     bool | None, Option("--stabilizer/--no-stabilizer", help="Ground contact stabilizer.")
 ]
+Steps = Annotated[
+    int | None, Option(help="Length of each walk in steps.", show_default="--duration", min=10)
+]
 Jobs = Annotated[int | None, Option(help="Worker processes.", show_default="one a CPU")]
 Out = Annotated[
     Path | None,

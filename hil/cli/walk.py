@@ -8,6 +8,7 @@ from typer import Exit
 
 from hil.cli import options
 from hil.cli.table import print_report
+from hil.fault_spec import gather_faults
 from hil.request import RunRequest
 from hil.schedule import parse_ball, parse_point, parse_push, parse_turn
 
@@ -18,6 +19,8 @@ stride walk                                       a dry run of the small biped, 
 stride walk --backend mujoco --speed 0 --speed 0.3@10    from 0 to 0.3 m/s in 10 s
 
 stride walk --turn 90@5 --push 0,3,0@8+0.3        a left turn, then a push from the right
+
+stride walk --fault servo:left_knee:silent@5+0.01    a servo silent for 10 ms (docs/faults.md)
 
 stride walk --realtime --duration 30              in real time, on pseudo-terminals
 
@@ -41,6 +44,8 @@ def walk(
     step_width: options.StepWidth = None,
     push: options.Push = None,
     ball: options.Ball = None,
+    fault: options.Faults = None,
+    fault_plan: options.FaultPlan = None,
     estimator: options.Estimator = None,
     pd: options.Pd = None,
     stabilizer: options.Stabilizer = None,
@@ -67,6 +72,7 @@ def walk(
         realtime=realtime,
         priority=priority,
         schedules=_schedules(speed, lateral, turn, push, ball) | {"step_width": step_width},
+        faults=gather_faults(fault or (), fault_plan),
         estimator=estimator,
         pd=pd,
         stabilizer=stabilizer,

@@ -11,8 +11,11 @@ from hil.studies.figures_speeds import FALLEN
 from hil.studies.study import Result
 
 
-def draw_rates(title: str, rows: list[Result], duration_s: float, path: Path) -> None:
-    """A row a law and scenario: dots walked to the end, crosses fell, lower for sooner."""
+def draw_rates(title: str, rows: list[Result], duration_s: float, length: str, path: Path) -> None:
+    """A row a law and scenario: dots walked to the end, crosses fell, lower for sooner.
+
+    Dots are at `duration_s`; `length` is how the title calls a whole walk.
+    """
     kinds = list(dict.fromkeys(map(_kind, rows)))
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(9, 0.8 + 0.75 * len(kinds)), layout="constrained")
@@ -35,8 +38,7 @@ def draw_rates(title: str, rows: list[Result], duration_s: float, path: Path) ->
             axes.set_xticks([row["period_froude"] for row in of_kind], labels)
             axes.tick_params(labelbottom=place == len(kinds))
         axes.set_xlabel("control period h·√(g/L) and rate")
-        figure.suptitle(f"{title}: time walked, of {duration_s:g} s", x=0.01, ha="left",
-                        fontweight="bold")  # fmt: skip
+        figure.suptitle(f"{title}: time walked, of {length}", x=0.01, ha="left", fontweight="bold")
         figure.savefig(path, dpi=90)
 
 

@@ -13,7 +13,7 @@ from hil.studies.coronal_cycle import FROUDE_SPEED, coronal_cycle
 from hil.studies.figures_rates import draw_rates
 from hil.studies.study import Case, Result, RunCases, Study, StudyResult, Table
 from hil.studies.titles import outcome, title
-from hil.studies.walks import Walk, finite, mean_step_time, mean_velocity, walk
+from hil.studies.walks import PROBE_S, Walk, finite, lasting, mean_step_time, mean_velocity, walk
 
 Scenario = Literal["straight", "cycle", "pushed"]
 SCENARIOS: tuple[Scenario, ...] = ("straight", "cycle", "pushed")
@@ -23,7 +23,6 @@ LATERAL_FROUDE = 0.141
 """100 N for 0.3 s on the seeds' character as Δv/√(gL), their lateral push."""
 BACKWARD_FROUDE = 0.212
 """150 N for 0.3 s, their backward push."""
-PROBE_S = 8.0
 
 
 class RateCase(Case):
@@ -34,6 +33,8 @@ class RateCase(Case):
     """[kg]"""
     speed_scale: PositiveFloat
     """√(gL) [m/s]."""
+    steps: PositiveInt | None = None
+    """Length of the walk; none: that of the request."""
 
 
 class RateStudy(Study):
@@ -49,6 +50,8 @@ class RateStudy(Study):
     pds: tuple[PdName | None, ...] = Field(min_length=1)
     scenarios: tuple[Scenario, ...] = Field(min_length=1)
     duration_s: PositiveFloat
+    steps: PositiveInt | None = None
+    """Length of each walk in steps in place of the duration."""
 
     def conduct(self, run_cases: RunCases) -> StudyResult:
         """Walk every scenario at every rate, the costly high rates first."""
@@ -59,6 +62,7 @@ class RateStudy(Study):
                 scenario=scenario,
                 mass=facts.mass,
                 speed_scale=facts.speed_scale,
+                steps=self.steps,
             )
             for rate_hz in sorted(self.rates_hz, reverse=True)
             for pd in self.pds
@@ -76,13 +80,19 @@ class RateStudy(Study):
             for case, result in zip(cases, run_cases(walk_at_rate, cases), strict=True)
         ]
         head = title(self.request, controller=False)
-        draw = partial(draw_rates, head, rows, self.duration_s)
+        ends = [row["stopped_s"] for row in rows if row["stopped_s"] is not None]
+        longest = self.duration_s if self.steps is None else 1.1 * max(ends, default=1.0)
+        draw = partial(draw_rates, head, rows, longest, self._length)
         return StudyResult(rows, [self._table(head, rows)], draw)
 
     def _request(self, rate_hz: int, pd: PdName | None) -> RunRequest:
         return self.request.model_copy(
             update={"rate_hz": rate_hz, "pd": pd, "duration_s": self.duration_s}
         )
+
+    @property
+    def _length(self) -> str:
+        return f"{self.duration_s:g} s" if self.steps is None else f"{self.steps} steps"
 
     def _table(self, head: str, rows: list[Result]) -> Table:
         """A line a rate, a column for each law and scenario: speed reached, or how it ended."""
@@ -94,7 +104,7 @@ class RateStudy(Study):
             period = f"{of_rate[0]['period_froude']:.4f}"
             lines.append((str(rate_hz), period, *(cells[column] for column in columns)))
         names = tuple(" ".join(filter(None, column)) for column in columns)
-        subject = f"{head}: mean speed [m/s] of {self.duration_s:g} s, or how the walk ended"
+        subject = f"{head}: mean speed [m/s] of {self._length}, or how the walk ended"
         return Table(subject, ("rate Hz", "h·√(g/L)", *names), lines)
 
 
@@ -132,7 +142,13 @@ def walk_at_rate(case: RateCase) -> Result:
 
 def walk_scenario(case: RateCase) -> Walk:
     """The walk of a scenario; if its steps must be timed first and that falls, the fallen one."""
-    request, schedules = case.request, case.request.schedules
+    request = case.request
+    if case.steps is not None:
+        longer = lasting(request, case.steps)
+        if isinstance(longer, Walk):
+            return longer
+        request = longer
+    schedules = request.schedules
     if case.scenario == "cycle":
         probe = walk(request.model_copy(update={"duration_s": min(PROBE_S, request.duration_s)}))
         if probe.stopped_s is not None:
@@ -141,13 +157,14 @@ def walk_scenario(case: RateCase) -> Walk:
         points = coronal_cycle(amplitude, mean_step_time(probe.trace), request.duration_s)
         schedules = schedules.model_copy(update={"lateral": points})
     if case.scenario == "pushed":
-        schedules = schedules.model_copy(update={"pushes": seed_pushes(case)})
+        pushes = seed_pushes(case, request.duration_s)
+        schedules = schedules.model_copy(update={"pushes": pushes})
     return walk(request.model_copy(update={"schedules": schedules}))
 
 
-def seed_pushes(case: RateCase) -> tuple[Push, Push]:
-    """One push to the left, and later one backward."""
-    duration_s, force = case.request.duration_s, case.mass * case.speed_scale / PUSH_S
+def seed_pushes(case: RateCase, duration_s: float) -> tuple[Push, Push]:
+    """One push to the left, and later one backward, in a walk of so many seconds."""
+    force = case.mass * case.speed_scale / PUSH_S
     return (
         Push(force=(0.0, LATERAL_FROUDE * force, 0.0), start=0.4 * duration_s, duration=PUSH_S),
         Push(force=(-BACKWARD_FROUDE * force, 0.0, 0.0), start=0.7 * duration_s, duration=PUSH_S),

@@ -3,7 +3,7 @@
 from functools import partial
 from typing import ClassVar
 
-from pydantic import Field, PositiveFloat
+from pydantic import Field, PositiveFloat, PositiveInt
 
 from hil.request import RunRequest
 from hil.robot_facts import robot_facts
@@ -11,7 +11,7 @@ from hil.robot_files import load_robot
 from hil.studies.figures_speeds import draw_speeds
 from hil.studies.study import Case, Result, RunCases, Study, StudyResult, Table
 from hil.studies.titles import outcome, title
-from hil.studies.walks import finite, mean_velocity, walk
+from hil.studies.walks import Walk, finite, lasting, mean_velocity, walk
 
 SAGITTAL_FROUDE = (-0.0662, 0.0, 0.0662, 0.1159, 0.1655, 0.2317, 0.2648, 0.3310)
 """−0.2 … 1.0 m/s of the 70.4 kg human (L = 0.93 m) as v/√(gL)."""
@@ -26,6 +26,8 @@ class SpeedCase(Case):
     """[m/s]"""
     coronal: float
     """[m/s]"""
+    steps: PositiveInt | None = None
+    """Length of the walk; none: that of the request."""
 
 
 class SpeedStudy(Study):
@@ -37,12 +39,14 @@ class SpeedStudy(Study):
     coronal: tuple[float, ...] = Field(min_length=1)
     """Left positive [m/s]."""
     duration_s: PositiveFloat
+    steps: PositiveInt | None = None
+    """Length of each walk in steps in place of the duration."""
 
     def conduct(self, run_cases: RunCases) -> StudyResult:
         """Walk every pair of speeds."""
         request = self.request.model_copy(update={"duration_s": self.duration_s})
         cases = [
-            SpeedCase(request=request, sagittal=sagittal, coronal=coronal)
+            SpeedCase(request=request, sagittal=sagittal, coronal=coronal, steps=self.steps)
             for coronal in self.coronal
             for sagittal in self.sagittal
         ]
@@ -68,9 +72,8 @@ class SpeedStudy(Study):
             )
             for row in rows
         ]
-        return Table(
-            f"{title(self.request)}: {self.duration_s:g} s at each speed [m/s]", heads, lines
-        )
+        length = f"{self.duration_s:g} s" if self.steps is None else f"{self.steps} steps"
+        return Table(f"{title(self.request)}: {length} at each speed [m/s]", heads, lines)
 
 
 EMPTY: Result = dict.fromkeys(
@@ -94,7 +97,9 @@ def reach_speed(case: SpeedCase) -> Result:
     schedules = case.request.schedules.model_copy(
         update={"speed": ((0.0, case.sagittal),), "lateral": ((0.0, case.coronal),)}
     )
-    walked = walk(case.request.model_copy(update={"schedules": schedules}))
+    asked = case.request.model_copy(update={"schedules": schedules})
+    lasted = asked if case.steps is None else lasting(asked, case.steps)
+    walked = lasted if isinstance(lasted, Walk) else walk(lasted)
     sagittal, coronal = mean_velocity(walked.trace)
     ended = walked.stopped_s is None
     return {

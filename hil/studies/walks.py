@@ -1,6 +1,6 @@
 """One walk of a study, in memory: the same parts as `stride walk`, without a run folder."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -13,8 +13,13 @@ from hil.interface import Floats, Ints
 from hil.loop import Loop
 from hil.report import make_report
 from hil.request import RunRequest
+from hil.run import session_statistics
 from hil.run_folder import body_weight
+from hil.studies.noisy_loads import NoisyLoads
 from hil.trace import Trace, TraceSink
+
+PROBE_S = 8.0
+"""Length of the walks whose steps are timed [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,14 +43,20 @@ class Walk:
         return str(ends[0]["name"]) if ends else None
 
 
-def walk(request: RunRequest, *more: Sink) -> Walk:
-    """A walk, with further sinks. A fall is a result; raises StrideError for what cannot run."""
+def walk(request: RunRequest, *more: Sink, cell_noise_n: float = 0.0) -> Walk:
+    """A walk, with further sinks. A fall is a result; raises StrideError for what cannot run.
+
+    `cell_noise_n` is the standard deviation of white noise on every corner force of the estimate.
+    """
     session = build(request)
+    if cell_noise_n > 0.0:
+        noisy = NoisyLoads(session.estimator, cell_noise_n, request.seed)
+        session = replace(session, estimator=noisy)
     try:
         session.backend.open()
         rate_hz = session.request.rate_hz or session.description.defaults.rate_hz
         sink = TraceSink(len(session.description.joints), round(request.duration_s * rate_hz))
-        outcome = Loop(session, (sink, *more)).run()
+        outcome = Loop(session, (sink, *more), sits=False).run()
         trace = sink.trace()
         report = make_report(
             session.request,
@@ -53,7 +64,7 @@ def walk(request: RunRequest, *more: Sink) -> Walk:
             outcome,
             trace,
             body_weight(session.description),
-            session.backend.statistics(),
+            session_statistics(session),
             truth=session.world is not None,
         )
     finally:
@@ -74,6 +85,18 @@ def mean_step_time(trace: Trace) -> float:
     if len(times) < 2:
         raise StrideError("the unperturbed walk has too few steps to be timed")
     return float((times[-1] - times[0]) / (len(times) - 1))
+
+
+def lasting(request: RunRequest, steps: int) -> RunRequest | Walk:
+    """The request, long enough for so many steps by the step time of its first seconds.
+
+    If it does not come through these, the walk that ended there.
+    """
+    probe = walk(request.model_copy(update={"duration_s": PROBE_S}))
+    if probe.stopped_s is not None:
+        return probe
+    duration_s = (steps + 1) * mean_step_time(probe.trace)
+    return request.model_copy(update={"duration_s": duration_s})
 
 
 def mean_velocity(trace: Trace) -> tuple[float, float]:

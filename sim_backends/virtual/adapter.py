@@ -4,7 +4,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from hil.description import Bus, Noise, Timing
+from hil.description import Bus, Timing
+from hil.twin import Noise
 from sim_backends.latency import BITS_PER_BYTE, USB_CHUNK
 from sim_backends.virtual.host_port import HostPort
 

@@ -19,6 +19,7 @@ from sim_backends.plant import Plant
 from sim_backends.sensor_models import CellErrors, ImuErrors
 from sim_backends.virtual.clock import VirtualClock
 from sim_backends.virtual.host_port import HostPort
+from sim_backends.virtual.wire_faults import WireFaults
 
 CELL_ZERO = 1e5
 """Standard deviation of a cell's counts without load (assumed)."""
@@ -55,7 +56,10 @@ class SensorBoard:
         grid_hz = plant.rate_hz * plant.substeps
         self._stride = max(1, round(grid_hz / board.rate_hz))
         self._plant, self._clock, self._random, self._port = plant, clock, random, port
-        self._make_frame = make_frame
+        self.make_frame = make_frame
+        self.rewrite: Callable[[bytes], bytes] | None = None
+        """Faults of the board: from its frame to what it sends, empty for nothing."""
+        self._faults: WireFaults | None = None
         self._sequence = int(random.integers(1 << 16))
         self._offset_us = int(random.integers(1 << 32))
         self._microseconds = 1e-3 * (1 + random.uniform(-CLOCK_ERROR, CLOCK_ERROR))
@@ -72,16 +76,33 @@ class SensorBoard:
     def host_wrote(self, data: bytes, baud: int) -> None:
         """Boards only talk."""
 
+    def wire(self) -> WireFaults:
+        """Faults of the line to the host; there is a list of them from the first call on."""
+        if self._faults is None:
+            self._faults = WireFaults()
+        return self._faults
+
+    def shift_clock(self, microseconds: int) -> None:
+        """Have the board's clock jump."""
+        self._offset_us += microseconds
+
     def _sample(self) -> None:
         now_ns = self._sample_ns
         device_us = int(now_ns * self._microseconds) + self._offset_us
-        frame = self._make_frame(self._sequence, device_us)
+        frame = self.make_frame(self._sequence, device_us)
+        if self.rewrite is not None:
+            frame = self.rewrite(frame)
         self._sequence += 1
         wire_ns = wire_time_ns(len(frame), self._baud)
         jitter_ns = int(self._random.random() * self._jitter_ns)
         arrival_ns = max(now_ns + self._hold_ns + wire_ns + jitter_ns, self._last_arrival_ns)
         self._last_arrival_ns = arrival_ns
-        self._port.deliver_at(arrival_ns, frame)
+        if self._faults is None:
+            self._port.deliver_at(arrival_ns, frame)
+        else:
+            for late_ns, left in self._faults.to_host([(arrival_ns, frame)], self._baud):
+                self._last_arrival_ns = late_ns
+                self._port.deliver_at(late_ns, left)
         self._index += self._stride
         self._sample_ns = self._plant.grid_time_ns(self._index)
         self._clock.schedule(self._sample_ns, self._sample)

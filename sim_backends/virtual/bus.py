@@ -11,6 +11,7 @@ from sim_backends.virtual.clock import VirtualClock
 from sim_backends.virtual.dispatch import Dispatcher, Reply
 from sim_backends.virtual.host_timing import HostTiming
 from sim_backends.virtual.servo import EmulatedServo
+from sim_backends.virtual.wire_faults import WireFaults
 
 _INSTRUCTION_BYTE = 7
 _GOAL_WRITES = {Instruction.SYNC_WRITE, Instruction.BULK_WRITE}
@@ -42,6 +43,7 @@ class ServoBus:
         self._host_until_ns = self._servos_until_ns = 0
         self._heard_ns = clock.now_ns()
         self._watching = False
+        self._faults: WireFaults | None = None
         self.collisions = 0
         """Host transmissions that were lost because servos were talking."""
         for servo in self._servos:
@@ -51,10 +53,29 @@ class ServoBus:
         """Bytes leave the host now: through the adapter, along the wire, to the servos."""
         goals = len(data) > _INSTRUCTION_BYTE and data[_INSTRUCTION_BYTE] in _GOAL_WRITES
         leave_ns = self._host.departure_ns(goals)
+        if self._faults is None:
+            self._transmit(data, baud, leave_ns)
+            return
+        echoes = self._faults.echoes()
+        delay_ns, left = self._faults.to_devices(data)
+        if left:
+            begin_ns = self._transmit(left, baud, leave_ns + delay_ns)
+            if echoes:
+                self._adapter.forward([(begin_ns, left)], baud)
+
+    def wire(self) -> WireFaults:
+        """Faults of the wire; there is a list of them from the first call on."""
+        if self._faults is None:
+            self._faults = WireFaults()
+        return self._faults
+
+    def _transmit(self, data: bytes, baud: int, leave_ns: int) -> int:
+        """Put bytes on the wire as soon as they may leave and it is free; when they begin."""
         begin_ns = max(leave_ns + self._adapter.transfer_ns(), self._host_until_ns)
         end_ns = begin_ns + wire_time_ns(len(data), baud)
         self._host_until_ns = end_ns
         self._clock.schedule(end_ns, partial(self._arrive, data, baud, begin_ns))
+        return begin_ns
 
     def _arrive(self, data: bytes, baud: int, begin_ns: int) -> None:
         if begin_ns < self._servos_until_ns:
@@ -66,18 +87,22 @@ class ServoBus:
         now_ns = self._clock.now_ns()
         for packet in self._reader.feed(data):
             self._heard_ns = now_ns
+            if self._faults is not None:
+                self._faults.draw()
             self._answer(self._dispatcher.handle(packet, BAUD_CODES.get(baud, -1), now_ns))
 
     def _answer(self, replies: Sequence[Reply]) -> None:
         """Put answers on the wire one after another."""
-        end_ns = self._clock.now_ns()
+        end_ns = begin_ns = self._clock.now_ns()
         segments = []
         for reply in replies:
-            start_ns = end_ns + reply.gap_ns
+            start_ns = max(end_ns + reply.gap_ns, begin_ns + reply.slot_ns)
             end_ns = start_ns + wire_time_ns(len(reply.data), self._baud)
             segments.append((start_ns, reply.data))
         if segments:
             self._servos_until_ns = end_ns
+            if self._faults is not None:
+                segments = self._faults.to_host(segments, self._baud)
             self._adapter.forward(segments, self._baud)
 
     def _watch(self) -> None:

@@ -5,23 +5,32 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
-from drivers.dynamixel.control_table import RETURN_DELAY_UNIT_NS, TABLE_SIZE, StatusReturnLevel
+from drivers.dynamixel.control_table import (
+    EEPROM_END,
+    RETURN_DELAY_UNIT_NS,
+    TABLE_SIZE,
+    StatusReturnLevel,
+)
 from drivers.dynamixel.protocol import (
     BROADCAST_ID,
+    MAX_ID,
     Instruction,
     Packet,
-    StatusError,
     crc16,
     encode_status,
     fast_status_block,
     fast_status_start,
 )
 from sim_backends.virtual.servo import EmulatedServo
+from sim_backends.virtual.single_instructions import SINGLE, refuse
 
 TURNAROUND_NS = 20_000
 """From the end of a packet to the answer of a servo with Return Delay Time 0 (assumed)."""
-_KEPT = {b"\xff": (False, False), b"\x01": (True, False), b"\x02": (True, True)}
-"""Parameter of FACTORY_RESET: whether id and baud are kept."""
+PING_SLOT_NS = 3_000_000
+"""A broadcast ping is answered by id i no sooner than i slots later; assumed, because the SDK
+waits 3 ms for each id there can be (DynamixelSDK, broadcastPing)."""
+_IDLE = b"\xff"
+"""What a wire carries on which nobody sends."""
 _WORDS = struct.Struct("<HH")
 _ITEM = struct.Struct("<BHH")
 
@@ -35,6 +44,8 @@ class Reply(NamedTuple):
     gap_ns: int
     """Silence before it [ns]."""
     data: bytes
+    slot_ns: int = 0
+    """Earliest start, after the request [ns]."""
 
 
 class Dispatcher:
@@ -43,12 +54,14 @@ class Dispatcher:
     Group reads are answered in the order of the request; where one servo does not answer, those
     behind it stay silent too (ROBOTIS in DynamixelSDK issue 364). A fast read is one packet that
     the servos write together, so it ends at that place; one for more bytes than fit a packet is
-    not answered (assumed). Group writes are not answered at all.
+    not answered (assumed). Group writes are not answered at all. Two servos of one id both obey,
+    and their answers collide.
     """
 
     def __init__(self, servos: Sequence[EmulatedServo]) -> None:
         self._servos = tuple(servos)
         self._hearing: dict[int, EmulatedServo] = {}
+        self._now_ns = 0
         self._groups: dict[int, Callable[[bytes], list[Reply]]] = {
             Instruction.SYNC_READ: lambda params: self._read_chain(_sync_items(params)),
             Instruction.FAST_SYNC_READ: lambda params: self._read_fast(_sync_items(params)),
@@ -60,11 +73,20 @@ class Dispatcher:
 
     def handle(self, packet: Packet, baud_code: int, now_ns: int) -> list[Reply]:
         """What the servos answer to a packet that came at a baud and a time."""
-        self._hearing = {
-            servo.id: servo
+        self._now_ns = now_ns
+        hearing = [
+            servo
             for servo in self._servos
-            if servo.baud_code == baud_code and servo.ready_ns <= now_ns
-        }
+            if servo.baud_code == baud_code and servo.ready_ns <= now_ns and not servo.deaf
+        ]
+        self._hearing = {servo.id: servo for servo in hearing}
+        replies = self._dispatch(packet)
+        if len(self._hearing) < len(hearing):
+            self._hearing = {servo.id: servo for servo in reversed(hearing)}
+            replies = _collided(replies, self._dispatch(packet))
+        return replies
+
+    def _dispatch(self, packet: Packet) -> list[Reply]:
         group = self._groups.get(packet.instruction)
         if group is not None:
             return group(packet.params)
@@ -79,32 +101,58 @@ class Dispatcher:
         wanted = sorted(self._hearing) if servo_id == BROADCAST_ID else [servo_id]
         servos = [self._hearing[key] for key in wanted if key in self._hearing]
         return [
-            Reply(_gap_ns(servo), encode_status(servo.id, servo.error(), servo.identity()))
+            Reply(
+                _gap_ns(servo),
+                encode_status(servo.id, servo.error(), servo.identity()),
+                PING_SLOT_NS * servo.id if servo_id == BROADCAST_ID else 0,
+            )
             for servo in servos
         ]
 
     def _tell_all(self, packet: Packet) -> list[Reply]:
         """An instruction to everybody, which nobody answers."""
-        action = _SINGLE.get(packet.instruction)
+        action = SINGLE.get(packet.instruction)
         for servo in self._hearing.values():
             if action is not None:
-                action(servo, packet.params)
+                action(servo, packet)
+                self._keep_busy(servo)
         return []
+
+    def _keep_busy(self, servo: EmulatedServo) -> None:
+        """A write into the EEPROM area that nobody waits for: the servo is deaf meanwhile."""
+        busy_ns = servo.take_busy_ns()
+        if busy_ns:
+            servo.ready_ns = self._now_ns + busy_ns
 
     def _ask(self, packet: Packet) -> list[Reply]:
         """An instruction to one servo."""
         servo = self._hearing.get(packet.id)
-        if servo is None or packet.instruction == Instruction.STATUS:
+        if packet.instruction == Instruction.STATUS:
             return []
+        if servo is None:
+            return self._tell_shadows(packet)
         gap_ns, level = _gap_ns(servo), servo.status_level
-        action = _SINGLE.get(packet.instruction, _refuse)
-        error, data = action(servo, packet.params)
+        action = SINGLE.get(packet.instruction, refuse)
+        error, data = action(servo, packet)
+        gap_ns += servo.take_busy_ns()
         wanted = StatusReturnLevel.ALL
         if packet.instruction == Instruction.READ:
             wanted = StatusReturnLevel.PING_AND_READ
         if level < wanted:
             return []
         return [Reply(gap_ns, encode_status(packet.id, error, data))]
+
+    def _tell_shadows(self, packet: Packet) -> list[Reply]:
+        """Servos whose secondary id it is obey and do not answer (e-manual, Secondary ID)."""
+        action = SINGLE.get(packet.instruction)
+        for servo in self._shadows(packet.id):
+            if action is not None:
+                action(servo, packet)
+                self._keep_busy(servo)
+        return []
+
+    def _shadows(self, servo_id: int) -> list[EmulatedServo]:
+        return [servo for servo in self._hearing.values() if servo.shadow_id == servo_id <= MAX_ID]
 
     def _readers(self, items: Items) -> Iterator[tuple[EmulatedServo, int, int]]:
         """Servos that answer a group read: up to the first silent one."""
@@ -124,6 +172,8 @@ class Dispatcher:
         out, crc = _fast_head(items)
         parts, gap_ns = [out], -1
         for servo, address, length in self._readers(items if out else ()):
+            if not servo.registers.firmware.fast_reads:
+                break
             if gap_ns < 0:
                 gap_ns = _gap_ns(servo)
             error, data = servo.read(address, length)
@@ -138,9 +188,7 @@ class Dispatcher:
             return []
         address, length = _WORDS.unpack_from(params)
         for begin in range(_WORDS.size, len(params) - length, 1 + length):
-            servo = self._hearing.get(params[begin])
-            if servo is not None:
-                servo.write(address, params[begin + 1 : begin + 1 + length])
+            self._write_one(params[begin], address, params[begin + 1 : begin + 1 + length])
         return []
 
     def _write_bulk(self, params: bytes) -> list[Reply]:
@@ -148,11 +196,17 @@ class Dispatcher:
         while begin + _ITEM.size <= len(params):
             servo_id, address, length = _ITEM.unpack_from(params, begin)
             begin += _ITEM.size
-            servo = self._hearing.get(servo_id)
-            if servo is not None:
-                servo.write(address, params[begin : begin + length])
+            self._write_one(servo_id, address, params[begin : begin + length])
             begin += length
         return []
+
+    def _write_one(self, servo_id: int, address: int, data: bytes) -> None:
+        """One part of a group write, to a servo or to those whose secondary id it is."""
+        servo = self._hearing.get(servo_id)
+        for target in self._shadows(servo_id) if servo is None else (servo,):
+            target.write(address, data)
+            if address < EEPROM_END:
+                self._keep_busy(target)
 
 
 @lru_cache(maxsize=64)
@@ -180,57 +234,15 @@ def _fast_head(items: Items) -> tuple[bytes, int]:
     return head, crc16(head)
 
 
+def _collided(first: list[Reply], second: list[Reply]) -> list[Reply]:
+    """Two servos of one id answer at once: a bit is 1 where both, or nobody, send 1."""
+    replies = []
+    for one, other in zip(first, second, strict=False):
+        size = max(len(one.data), len(other.data))
+        pairs = zip(one.data.ljust(size, _IDLE), other.data.ljust(size, _IDLE), strict=True)
+        replies.append(one._replace(data=bytes(a & b for a, b in pairs)))
+    return replies + max(first, second, key=len)[len(replies) :]
+
+
 def _gap_ns(servo: EmulatedServo) -> int:
     return TURNAROUND_NS + servo.return_delay * RETURN_DELAY_UNIT_NS
-
-
-Answer = tuple[int, bytes]
-
-
-def _refuse(servo: EmulatedServo, _: bytes) -> Answer:
-    return servo.error(StatusError.INSTRUCTION), b""
-
-
-def _read(servo: EmulatedServo, params: bytes) -> Answer:
-    if len(params) != _WORDS.size:
-        return servo.error(StatusError.DATA_LENGTH), b""
-    return servo.read(*_WORDS.unpack(params))
-
-
-def _write(servo: EmulatedServo, params: bytes) -> Answer:
-    return servo.write(int.from_bytes(params[:2], "little"), params[2:]), b""
-
-
-def _register_write(servo: EmulatedServo, params: bytes) -> Answer:
-    return servo.register_write(int.from_bytes(params[:2], "little"), params[2:]), b""
-
-
-def _act(servo: EmulatedServo, _: bytes) -> Answer:
-    return servo.act(), b""
-
-
-def _reboot(servo: EmulatedServo, _: bytes) -> Answer:
-    servo.reboot()
-    return servo.error(), b""
-
-
-def _factory_reset(servo: EmulatedServo, params: bytes) -> Answer:
-    if params not in _KEPT:
-        return servo.error(StatusError.DATA_RANGE), b""
-    servo.factory_reset(*_KEPT[params])
-    return servo.error(), b""
-
-
-def _clear(servo: EmulatedServo, params: bytes) -> Answer:
-    return servo.clear(params), b""
-
-
-_SINGLE: dict[int, Callable[[EmulatedServo, bytes], Answer]] = {
-    Instruction.READ: _read,
-    Instruction.WRITE: _write,
-    Instruction.REG_WRITE: _register_write,
-    Instruction.ACTION: _act,
-    Instruction.REBOOT: _reboot,
-    Instruction.FACTORY_RESET: _factory_reset,
-    Instruction.CLEAR: _clear,
-}

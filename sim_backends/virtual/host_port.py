@@ -27,10 +27,27 @@ class HostPort:
         """Delivered and not read yet."""
         self.is_open = False
         """A serial object of this process holds it."""
+        self.plugged = True
+        """The adapter is there."""
+        self.plugged_times = 0
+        """How often it was plugged in again; who opened it before has lost it."""
+        self.on_unplug: Callable[[], None] = lambda: None
         self.last_read_ns = 0
         """When the host last took bytes."""
         self.on_bytes: Callable[[bytes], None] = self._keep
         self._clock = clock
+
+    def unplug(self) -> None:
+        """The adapter is pulled out: whoever holds the port has lost it."""
+        self.plugged = self.is_open = False
+        self.received.clear()
+        self._clock.deliveries += 1
+        self.on_unplug()
+
+    def plug_in(self) -> None:
+        """The adapter is back, and can be opened again."""
+        self.plugged = True
+        self.plugged_times += 1
 
     def deliver_at(self, time_ns: int, data: bytes) -> None:
         """Have bytes arrive in the host at a time."""

@@ -32,6 +32,7 @@ class Serial(serial.SerialBase):
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         self._line: HostPort | None = None
         self._device: Device | None = None
+        self._opened = 0
         super().__init__(*args, **kwargs)
 
     def open(self) -> None:
@@ -44,23 +45,24 @@ class Serial(serial.SerialBase):
         line, device = _lines[self.port]
         if line.is_open:
             raise serial.SerialException(f"virtual port {self.port!r} is in use")
+        if not line.plugged:
+            raise serial.SerialException(f"virtual port {self.port!r}: no such device")
         line.is_open = True
         line.received.clear()
+        self._opened = line.plugged_times
         self._line, self._device, self.is_open = line, device, True
 
     def close(self) -> None:
         """Give the line back; safe to call twice."""
-        if self._line is not None:
-            self._line.is_open = False
+        line = self._line
+        if line is not None and line.plugged and line.plugged_times == self._opened:
+            line.is_open = False
         self._line, self._device, self.is_open = None, None, False
 
     @property
     def in_waiting(self) -> int:
         """Bytes that can be read at once."""
-        line = self._line
-        if line is None:
-            raise serial.PortNotOpenError()
-        return len(line.received)
+        return len(self._held().received)
 
     def read(self, size: int = 1) -> bytes:
         """Up to `size` bytes that have arrived."""
@@ -85,9 +87,12 @@ class Serial(serial.SerialBase):
         """Nothing waits here."""
 
     def _held(self) -> HostPort:
-        if self._line is None:
+        line = self._line
+        if line is None:
             raise serial.PortNotOpenError()
-        return self._line
+        if not line.plugged or line.plugged_times != self._opened:
+            raise serial.SerialException(f"virtual port {self.port!r}: device disconnected")
+        return line
 
     def _reconfigure_port(self) -> None:
         """The device looks at the speed of every write; nothing to set."""

@@ -24,7 +24,7 @@ class PtyLine:
 
     def __init__(self, device: Device) -> None:
         self._device = device
-        self._has_client = False
+        self._has_client = self._closed = False
         self._master, slave = pty.openpty()
         tty.setraw(slave)
         self.path = os.ttyname(slave)
@@ -52,7 +52,7 @@ class PtyLine:
 
     def send(self, data: bytes) -> None:
         """Hand bytes to the client, if there is one."""
-        if not (self._has_client or self._look_for_client()):
+        if self._closed or not (self._has_client or self._look_for_client()):
             return
         try:
             os.write(self._master, data)
@@ -76,6 +76,12 @@ class PtyLine:
         raw = fcntl.ioctl(self._master, _TCGETS2, bytes(_TERMIOS2.size))
         return int(_TERMIOS2.unpack(raw)[-1])
 
-    def close(self) -> None:
-        """Hang up."""
+    def hang_up(self) -> None:
+        """The adapter is pulled out: clients get an error, and nothing comes back."""
         os.close(self._master)
+        self._closed = True
+
+    def close(self) -> None:
+        """Hang up; safe after `hang_up`."""
+        if not self._closed:
+            self.hang_up()

@@ -8,9 +8,8 @@ from drivers.dynamixel.control_table import (
     Register,
 )
 from drivers.dynamixel.servo_models import ServoModel
+from sim_backends.virtual.firmware import FIRMWARE, Firmware
 
-FIRMWARE = 48
-"""Firmware Version of emulated servos: has bus watchdog and fast reads (assumed)."""
 _MEASURED, _MEASURED_END = Register.REALTIME_TICK.address, Register.PRESENT_TEMPERATURE.end
 EXTENDED_POSITION = 1_048_575
 """Largest Goal Position outside the position mode (256 turns)."""
@@ -31,25 +30,33 @@ _CONTROL = (
 class RegisterFile:
     """Bytes of one control table. An indirect data byte is the byte that its address points at."""
 
-    def __init__(self, model: ServoModel, servo_id: int, baud: int) -> None:
+    def __init__(
+        self, model: ServoModel, servo_id: int, baud: int, firmware: int = FIRMWARE
+    ) -> None:
         """A servo set up for a robot: its id and baud, no return delay, else as from factory."""
         self.model = model
         self.goal_bounds = (0, 0)
         """Least and greatest Goal Position of the operating mode; see `adopt_mode`."""
         self.memory = bytearray(TABLE_SIZE)
-        self._places = {
-            cells.data + i: cells.address + 2 * i
-            for cells in model.indirect
-            for i in range(cells.count)
-        }
-        """From an indirect data byte to the place of the address that it follows."""
-        self._first_place = min(self._places.values())
-        self._first_data = min(self._places)
+        self.install(firmware)
         self.reset_eeprom()
         self[Register.ID] = servo_id
         self[Register.BAUD_RATE] = BAUD_CODES[baud]
         self[Register.RETURN_DELAY_TIME] = 0
         self.reset_ram()
+
+    def install(self, firmware: int) -> None:
+        """Another firmware version; the RAM area needs a reset then."""
+        self.firmware = Firmware(self.model, firmware)
+        self._places = {
+            cells.data + i: cells.address + 2 * i
+            for cells in self.firmware.indirect
+            for i in range(cells.count)
+        }
+        """From an indirect data byte to the place of the address that it follows."""
+        self._first_place = min(self._places.values())
+        self._first_data = min(self._places)
+        self[Register.FIRMWARE_VERSION] = firmware
 
     def __getitem__(self, register: Register) -> int:
         row = register.spec
@@ -64,7 +71,7 @@ class RegisterFile:
         for register in Register:
             if register.address < EEPROM_END:
                 self[register] = self.model.initial(register) or 0
-        self[Register.FIRMWARE_VERSION] = FIRMWARE
+        self[Register.FIRMWARE_VERSION] = self.firmware.version
 
     def reset_ram(self) -> None:
         """Power-on values of the RAM area; indirect addresses point at their own data."""
@@ -134,11 +141,15 @@ class RegisterFile:
                 runs.append((target, bytes((byte,))))
         return runs
 
+    def indirect_addresses(self) -> dict[int, bytes]:
+        """What is in every indirect address, by its place."""
+        return {place: bytes(self.memory[place : place + 2]) for place in self._places.values()}
+
     def points_indirect(self, address: int, length: int) -> bool:
         """Whether a range lies within indirect addresses, and covers whole ones."""
         if address < self._first_place:
             return False
         return any(
             cells.address <= address and address + length <= cells.address + 2 * cells.count
-            for cells in self.model.indirect
+            for cells in self.firmware.indirect
         ) and not (address % 2 or length % 2)

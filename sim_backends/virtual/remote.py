@@ -7,11 +7,13 @@ import socket
 import subprocess
 import sys
 import time
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from hil.errors import BackendError, InputError
+from hil.fault_spec import FaultSpec
 from hil.interface import Floats, Truth
 from sim_backends.virtual.truth_block import TruthBlock
 
@@ -133,6 +135,14 @@ class RemoteWorld:
     def throw_ball(self, mass: float, velocity: Floats) -> None:
         """Throw a ball at the trunk, to hit it at a world velocity [m/s]."""
         self._ask({"do": "ball", "mass": mass, "velocity": velocity.tolist()})
+
+    def plan_faults(self, faults: Sequence[FaultSpec]) -> None:
+        """What goes wrong in this run. Raises BackendError for what the robot cannot have."""
+        self._ask({"do": "plan", "faults": [fault.model_dump() for fault in faults]})
+
+    def begin_faults(self, epoch_ns: int) -> None:
+        """T = 0 of the planned faults, on the monotonic clock."""
+        self._ask({"do": "begin", "time_ns": epoch_ns})
 
     def set_support(self, supported: bool) -> None:
         """Hold the root body where it is, or let it go."""

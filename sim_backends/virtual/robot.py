@@ -8,8 +8,9 @@ import numpy as np
 
 from hil.description import RobotDescription
 from hil.errors import InputError
+from hil.fault_spec import FaultSpec, parse_fault
 from sim_backends.plant import Plant
-from sim_backends.sensor_models import CellErrors, ImuErrors
+from sim_backends.sensor_models import CellErrors, ImuErrors, dead_cells
 from sim_backends.virtual import protocol_virtual
 from sim_backends.virtual.adapter import UsbAdapter
 from sim_backends.virtual.boards import FrameMaker, InertialUnit, LoadCells, SensorBoard
@@ -17,6 +18,7 @@ from sim_backends.virtual.bus import ServoBus
 from sim_backends.virtual.clock import VirtualClock
 from sim_backends.virtual.host_port import Device, HostPort
 from sim_backends.virtual.host_timing import HostTiming
+from sim_backends.virtual.injector import Injector
 from sim_backends.virtual.motors import Motor, MotorBank, servo_models
 from sim_backends.virtual.register_file import RegisterFile
 from sim_backends.virtual.servo import EmulatedServo
@@ -67,12 +69,22 @@ class VirtualRobot:
             host = HostTiming(0, ports, host_now_ns)
         buses = self._make_buses(wires, host)
         self._cells = {
-            side: LoadCells(plant, index, CellErrors(description.noise, sensors, 4), sensors)
+            side: LoadCells(
+                plant,
+                index,
+                CellErrors(description.noise, sensors, 4, dead_cells(description, side)),
+                sensors,
+            )
             for index, side in enumerate(("left", "right"))
         }
-        self._imu = InertialUnit(plant, ImuErrors(description.noise, sensors))
-        self.devices: dict[str, Device] = {**buses, **self._make_boards(sensors)}
+        self._imu = InertialUnit(
+            plant, ImuErrors(description.noise, sensors, plant.hidden.pitch_bias)
+        )
+        lines: dict[str, ServoBus | SensorBoard] = {**buses, **self._make_boards(sensors)}
+        self.devices: dict[str, Device] = {**lines}
         """What hangs on each line."""
+        self.faults = Injector(description, self.clock, seed, self.servos, lines, self.ports)
+        """What goes wrong, and when."""
 
     def _make_buses(self, random: np.random.Generator, host: HostTiming) -> dict[str, ServoBus]:
         description = self.description
@@ -113,6 +125,11 @@ class VirtualRobot:
             "feet": {s: self._cells[s].calibration() for s in feet if feet[s].board is not None},
             "joint_offsets": dict.fromkeys(self.description.joint_names, 0.0),
         }
+
+    def inject(self, fault: str | FaultSpec) -> None:
+        """Have something go wrong; T counts from now. Raises InputError."""
+        spec = parse_fault(fault) if isinstance(fault, str) else fault
+        self.faults.inject(spec, self.clock.now_ns())
 
     def start(self) -> None:
         """Make the lines available to `serial.serial_for_url`."""

@@ -26,6 +26,7 @@ import numpy as np
 
 from hil.description import RobotDescription
 from hil.errors import StrideError
+from hil.fault_spec import FaultSpec, check_faults
 from hil.robot_files import load_robot
 from sim_backends.plant import Plant
 from sim_backends.virtual.control import ControlServer, Request, three_numbers
@@ -34,6 +35,9 @@ from sim_backends.virtual.pty_line import PtyLine
 from sim_backends.virtual.robot import VirtualRobot
 from sim_backends.virtual.truth_block import TruthBlock
 
+_SLIP_NS = 200_000_000
+"""Lag behind real time that is given up instead of caught up [ns]: no walk survives it, but a
+client that reads registers should not wait for seconds on a machine that is too slow."""
 _WORK_NS = 300_000
 """Longest work between two looks at what clients sent [ns]."""
 
@@ -45,7 +49,7 @@ class VirtualRobotServer:
     transfer later at the earliest, so virtual time runs that far ahead of real time: physics,
     boards and answers are computed before they are due, piece by piece. Bytes for clients then
     wait in an outbox and leave when their modelled time has come, never before; how much later
-    is up to the machine.
+    is up to the machine. On one that is too slow virtual time slips.
     """
 
     def __init__(self, description: RobotDescription, rate_hz: int, seed: int) -> None:
@@ -56,13 +60,15 @@ class VirtualRobotServer:
         self._folder = Path(tempfile.mkdtemp(prefix="stridebridge-"))
         self._truth = TruthBlock(self._folder / "truth", len(description.joints), create=True)
         handlers = {"hello": self._hello, "push": self._push, "support": self._support,
-                    "ball": self._ball,
+                    "ball": self._ball, "inject": self._inject,
+                    "plan": self._plan, "begin": self._begin,
                     "figures": self._figures, "quit": self._quit}  # fmt: skip
         self._control = ControlServer(self._folder / "control", handlers)
         self._lines = {name: PtyLine(device) for name, device in self._robot.devices.items()}
         self._outbox: deque[tuple[int, PtyLine, bytes]] = deque()
         for name, line in self._lines.items():
             self._robot.ports[name].on_bytes = partial(self._post, line)
+            self._robot.ports[name].on_unplug = line.hang_up
         self._ahead_ns = 1000 * description.timing.usb_transfer_us
         self._running = True
         self._publish()
@@ -79,9 +85,14 @@ class VirtualRobotServer:
             "control": str(self._folder / "control"),
         }
 
+    def plan_faults(self, faults: Sequence[FaultSpec]) -> None:
+        """What goes wrong; T = 0 is the beginning of `serve`."""
+        self._robot.faults.plan(faults)
+
     def serve(self, watch_stdin: bool) -> None:
         """Run until told to stop. Raises BackendError when the simulation diverges."""
         self._start_ns = time.monotonic_ns() - self._robot.clock.now_ns()
+        self._robot.faults.begin(self._robot.clock.now_ns())
         sources: dict[int, Callable[[int], None]] = {}
         with select.epoll() as poll:
             for line in self._lines.values():
@@ -127,6 +138,10 @@ class VirtualRobotServer:
         """
         before = self._plant.substep_index
         began_ns = self._send_due()
+        lag_ns = began_ns - self._robot.clock.now_ns()
+        if lag_ns > _SLIP_NS:
+            self._start_ns += lag_ns
+            began_ns -= lag_ns
         while self._robot.clock.advance_once(began_ns + self._ahead_ns):
             if self._send_due() > began_ns + _WORK_NS:
                 break
@@ -163,6 +178,18 @@ class VirtualRobotServer:
         self._plant.throw_ball(mass, np.array(three_numbers(request["velocity"])))
         return {}
 
+    def _inject(self, request: Request) -> dict[str, Any]:
+        self._robot.inject(str(request["fault"]))
+        return {}
+
+    def _plan(self, request: Request) -> dict[str, Any]:
+        self._robot.faults.plan([FaultSpec.model_validate(fault) for fault in request["faults"]])
+        return {}
+
+    def _begin(self, request: Request) -> dict[str, Any]:
+        self._robot.faults.begin(int(request["time_ns"]) - self._start_ns)
+        return {}
+
     def _support(self, request: Request) -> dict[str, Any]:
         self._plant.set_support(bool(request["supported"]))
         return {}
@@ -188,10 +215,20 @@ class VirtualRobotServer:
 
 
 def run_server(
-    description: RobotDescription, rate_hz: int, seed: int, as_json: bool, watch_stdin: bool
+    description: RobotDescription,
+    rate_hz: int,
+    seed: int,
+    as_json: bool,
+    watch_stdin: bool,
+    faults: Sequence[FaultSpec] = (),
 ) -> None:
-    """Serve a virtual robot in this process until a signal; prints where its ports are."""
+    """Serve a virtual robot in this process until a signal; prints where its ports are.
+
+    T = 0 of the faults is when it is ready. Raises InputError for one that it cannot have.
+    """
+    check_faults(faults, description)
     server = VirtualRobotServer(description, rate_hz, seed)
+    server.plan_faults(faults)
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: server.stop())
     try:

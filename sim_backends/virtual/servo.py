@@ -1,93 +1,116 @@
-"""One emulated Dynamixel: what its firmware does with instructions, and with its motor."""
+"""One emulated Dynamixel: what its firmware does with instructions."""
 
 import struct
 from collections.abc import Callable
 
 from drivers.dynamixel.control_table import (
     EEPROM_END,
-    REALTIME_TICK_MODULUS,
     WATCHDOG_TRIPPED,
     WATCHDOG_UNIT_NS,
-    DriveMode,
-    HardwareError,
-    OperatingMode,
     Register,
 )
-from drivers.dynamixel.protocol import ALERT, StatusError
-from hil.servo import CENTRE_COUNTS
-from sim_backends.virtual.motors import PRESENT, Motor, Reading
+from drivers.dynamixel.protocol import ALERT, BROADCAST_ID, StatusError
+from sim_backends.virtual.backup import RESTORE, STORE, Backup
+from sim_backends.virtual.motors import Motor
 from sim_backends.virtual.register_file import RegisterFile
 from sim_backends.virtual.register_rules import Rows, check_value, write_plan
+from sim_backends.virtual.servo_drive import ServoDrive
 
 BOOT_NS = 200_000_000
 """From REBOOT to the first answer [ns]; assumed."""
-_POSITION_MODES = (OperatingMode.POSITION, OperatingMode.EXTENDED_POSITION)
-_SINGLE_TURN_OFFSET = 1024
-"""Largest Homing Offset that counts in the position mode; a larger one is ignored."""
+EEPROM_WRITE_NS = 1_000_000
+"""From a write into the EEPROM area to its answer, beside the usual gap [ns]; assumed."""
+PROTOCOL_2 = 2
 _CLEAR_POSITION = b"\x01\x44\x58\x4c\x22"
+_RESETS = {b"\xff": (False, False), b"\x01": (True, False), b"\x02": (True, True)}
+"""Parameter of FACTORY_RESET: whether id and baud are kept."""
 _TORQUE = Register.TORQUE_ENABLE.address
 _ERROR = Register.HARDWARE_ERROR_STATUS.address
 _WATCHDOG = Register.BUS_WATCHDOG.address
 _GOAL_ADDRESS = Register.GOAL_POSITION.address
 _GOAL_POSITION = struct.Struct("<i")
 _PRESENT, _PRESENT_END = Register.REALTIME_TICK.address, Register.PRESENT_TEMPERATURE.end
+_TRAJECTORIES = Register.VELOCITY_TRAJECTORY.address
 _GOALS, _GOALS_END = Register.GOAL_PWM.address, Register.GOAL_POSITION.end
 
 
 class EmulatedServo:
     """Registers with the firmware's rules, on a motor of the plant.
 
-    Modelled: access rules, EEPROM lock, resets by the operating mode, registered writes, alert
-    bit and latched hardware errors (input voltage, overheating), bus watchdog, realtime tick,
-    indirect cells, homing offset, reverse and torque-on-by-goal drive modes. The position modes
-    drive the motor by P and D gain and Goal PWM; in the other modes it gets no voltage, and motion
-    profiles, I and feed-forward gains have no effect. Measured registers hold the last physics
-    grid point and, like hardware errors, are looked at when they are read. Torque Enable adopts
-    no goal by itself (assumed): a goal that is far away makes the joint jump.
+    Modelled: access rules, EEPROM lock and write time, resets by the operating mode, registered
+    writes, alert bit and latched hardware errors, bus watchdog, realtime tick, indirect cells,
+    homing offset, drive modes, secondary id, protocol type, backup, and what older firmware lacks.
+    Measured registers hold the last physics grid point and, like hardware errors, are looked at
+    when they are read.
     """
 
     def __init__(self, registers: RegisterFile, motor: Motor, now_ns: Callable[[], int]) -> None:
         self.registers = registers
+        self.drive = ServoDrive(registers, motor, now_ns)
         self._memory = registers.memory
-        self._motor = motor
         self._now_ns = now_ns
-        self._effects: dict[int, Callable[[], None]] = self._make_effects()
+        self._backup = Backup(registers)
+        self._effects = self._make_effects()
         self.on_watchdog: Callable[[], None] = lambda: None
         """Called when `watchdog_ns` may have changed."""
+        self._mute = False
         self.ready_ns = 0
         """From when on it answers [ns]."""
+        self._busy_ns = 0
         self._power_on()
 
     def _make_effects(self) -> dict[int, Callable[[], None]]:
+        drive = self.drive
+        eeprom = [register for register in Register if register.address < EEPROM_END]
+        gains = [register for register in Register if "Gain" in register.spec.name]
         effects = {
-            register.address: self._adopt_settings
-            for register in Register
-            if register.address < EEPROM_END
-        }
-        special = {
-            Register.OPERATING_MODE: self._change_mode,
-            Register.PWM_LIMIT: self._change_limits,
+            **dict.fromkeys(eeprom, self._adopt_settings),
+            **dict.fromkeys(gains, drive.adopt_gains),
+            Register.PROFILE_VELOCITY: drive.adopt_gains,
+            Register.PROFILE_ACCELERATION: drive.adopt_gains,
+            Register.OPERATING_MODE: drive.change_mode,
+            Register.PWM_LIMIT: drive.change_limits,
             Register.STATUS_RETURN_LEVEL: self._adopt_settings,
-            Register.TORQUE_ENABLE: self._switch_torque,
+            Register.TORQUE_ENABLE: drive.switch_torque,
             Register.BUS_WATCHDOG: self._arm_watchdog,
-            Register.POSITION_P_GAIN: self._adopt_gains,
-            Register.POSITION_D_GAIN: self._adopt_gains,
-            Register.GOAL_PWM: self._adopt_gains,
-            Register.GOAL_POSITION: self._new_goal,
+            Register.GOAL_PWM: drive.adopt_goals,
+            Register.GOAL_CURRENT: drive.adopt_goals,
+            Register.GOAL_VELOCITY: drive.adopt_goals,
+            Register.GOAL_POSITION: drive.new_goal,
         }
-        return effects | {register.address: effect for register, effect in special.items()}
+        return {register.address: effect for register, effect in effects.items()}
 
     def _power_on(self) -> None:
-        """State after power-on or reboot: torque off, goal where the joint is."""
         self._registered: tuple[int, bytes] | None = None
-        self._latched = False
-        self._booted_ns = self._now_ns()
-        self._adopt_settings()
-        self.registers[Register.GOAL_POSITION] = self._shown(self._motor.reading())
-        self._switch_torque()
+        self._backup.restore_ram()
+        self._tripped = False
+        self._adopt_identity()
+        self.drive.power_on()
         self._arm_watchdog()
-        self._adopt_gains()
-        self._adopt_goal()
+
+    def _adopt_settings(self) -> None:
+        self._adopt_identity()
+        self.drive.adopt_settings()
+
+    def _adopt_identity(self) -> None:
+        registers = self.registers
+        self.id, self.shadow_id = registers[Register.ID], registers[Register.SHADOW_ID]
+        self.baud_code = registers[Register.BAUD_RATE]
+        self.return_delay = registers[Register.RETURN_DELAY_TIME]
+        self.status_level = registers[Register.STATUS_RETURN_LEVEL]
+        self._speaks = registers[Register.PROTOCOL_TYPE] == PROTOCOL_2
+        self.set_mute(self._mute)
+
+    def set_mute(self, mute: bool) -> None:
+        """A fault: it neither hears nor answers."""
+        self._mute = mute
+        self.deaf = mute or not self._speaks
+        """Hears nothing, by a fault or because it speaks another protocol."""
+
+    def take_id(self, servo_id: int) -> None:
+        """Another id, without being asked."""
+        self.registers[Register.ID] = servo_id
+        self._adopt_identity()
 
     # Instructions ----------------------------------------------------------------------------
 
@@ -99,14 +122,20 @@ class EmulatedServo:
         """Error byte of an answer, with the alert bit."""
         return status | ALERT if self._memory[_ERROR] else int(status)
 
+    def take_busy_ns(self) -> int:
+        """How long the last instruction keeps it busy before it answers [ns]."""
+        busy_ns, self._busy_ns = self._busy_ns, 0
+        return busy_ns
+
     def read(self, address: int, length: int) -> tuple[int, bytes]:
         """Error byte and data of a read."""
         end = address + length
-        if _PRESENT <= address < end <= _PRESENT_END:  # What a driver reads in every tick.
-            self._measure()
+        if _PRESENT <= address < end <= _TRAJECTORIES:  # What a driver reads in every tick.
+            self.drive.measure()
             return ALERT if self._memory[_ERROR] else 0, bytes(self._memory[address:end])
         if self.registers.reaches_present(address, length):
-            self._measure()
+            self.drive.measure()
+            self.drive.measure_trajectory()
         found = self.registers.read(address, length)
         if found is None:
             return self.error(StatusError.ACCESS), b""
@@ -143,18 +172,47 @@ class EmulatedServo:
         self._power_on()
         self.ready_ns = self._now_ns() + BOOT_NS
 
-    def factory_reset(self, keep_id: bool, keep_baud: bool) -> None:
-        """EEPROM at its factory values, but for what is kept, and restart."""
+    def factory_reset(self, params: bytes, addressed: int) -> int:
+        """EEPROM at its factory values, but for what is kept, and restart; the error byte."""
+        if params not in _RESETS:
+            return self.error(StatusError.DATA_RANGE)
+        keep_id, keep_baud = _RESETS[params]
+        if addressed == BROADCAST_ID and not keep_id and self.registers.firmware.safe_reset:
+            return self.error(StatusError.RESULT_FAIL)
         kept = [Register.ID] * keep_id + [Register.BAUD_RATE] * keep_baud
         values = {register: self.registers[register] for register in kept}
         self.registers.reset_eeprom()
         for register, value in values.items():
             self.registers[register] = value
         self.reboot()
+        return self.error()
 
     def clear(self, params: bytes) -> int:
         """Clear the turns of the position, of which a joint has none; the error byte."""
-        return self.error(StatusError.NONE if params == _CLEAR_POSITION else StatusError.DATA_RANGE)
+        if not self.registers.firmware.clear:
+            return self.error(StatusError.INSTRUCTION)
+        if params != _CLEAR_POSITION:
+            return self.error(StatusError.DATA_RANGE)
+        self.drive.measure()
+        moving = self.registers[Register.MOVING]
+        return self.error(StatusError.RESULT_FAIL if moving else StatusError.NONE)
+
+    def back_up(self, params: bytes) -> int:
+        """Store the control table, or restore it and restart; the error byte."""
+        if not self.registers.firmware.backup:
+            return self.error(StatusError.INSTRUCTION)
+        if params not in (STORE, RESTORE):
+            return self.error(StatusError.DATA_RANGE)
+        if self._memory[_TORQUE] or (params == RESTORE and not self._backup.exists):
+            return self.error(StatusError.RESULT_FAIL)
+        if params == STORE:
+            self._backup.store()
+            self.registers[Register.BACKUP_READY] = 1
+            self._busy_ns = EEPROM_WRITE_NS
+        else:
+            self._backup.restore_eeprom()
+            self.reboot()
+        return self.error()
 
     # Writing ---------------------------------------------------------------------------------
 
@@ -165,7 +223,7 @@ class EmulatedServo:
         if not low <= goal <= high or self._memory[_WATCHDOG] == WATCHDOG_TRIPPED:
             return False
         self._memory[_GOAL_ADDRESS : _GOAL_ADDRESS + _GOAL_POSITION.size] = data
-        self._new_goal()
+        self.drive.new_goal()
         return True
 
     def _write_run(self, address: int, data: bytes) -> StatusError:
@@ -173,7 +231,7 @@ class EmulatedServo:
         if self.registers.points_indirect(address, len(data)):
             self._memory[address : address + len(data)] = data
             return StatusError.NONE
-        plan = write_plan(self.registers.model.name, address, len(data))
+        plan = write_plan(self.registers.firmware.registers, address, len(data))
         if isinstance(plan, StatusError):
             return plan
         problem = self._check(plan, address, data)
@@ -186,6 +244,8 @@ class EmulatedServo:
             effect = self._effects.get(row.address)
             if effect is not None:
                 effect()
+        if plan[0].address < EEPROM_END:
+            self._busy_ns = EEPROM_WRITE_NS
         return StatusError.NONE
 
     def _check(self, plan: Rows, address: int, data: bytes) -> StatusError:
@@ -202,60 +262,12 @@ class EmulatedServo:
                 return problem
         return StatusError.NONE
 
-    def _adopt_settings(self) -> None:
-        registers = self.registers
-        registers.adopt_mode()
-        self.id, self.baud_code = registers[Register.ID], registers[Register.BAUD_RATE]
-        self.return_delay = registers[Register.RETURN_DELAY_TIME]
-        self.status_level = registers[Register.STATUS_RETURN_LEVEL]
-        mode = registers[Register.OPERATING_MODE]
-        offset = registers[Register.HOMING_OFFSET]
-        ignored = mode == OperatingMode.POSITION and abs(offset) > _SINGLE_TURN_OFFSET
-        self._offset = CENTRE_COUNTS + (0 if ignored else offset)
-        drive_mode = registers[Register.DRIVE_MODE]
-        self._sign = -1 if drive_mode & DriveMode.REVERSE else 1
-        self._drives = mode in _POSITION_MODES
-        self._torque_on_by_goal = drive_mode & DriveMode.TORQUE_ON_BY_GOAL_UPDATE
-        self._threshold = registers[Register.MOVING_THRESHOLD]
-        self._hottest = registers[Register.TEMPERATURE_LIMIT]
-        self._lowest = registers[Register.MIN_VOLTAGE_LIMIT]
-        self._highest = registers[Register.MAX_VOLTAGE_LIMIT]
-
-    def _change_mode(self) -> None:
-        self._adopt_settings()
-        self.registers.reset_control()
-        self._adopt_gains()
-
-    def _change_limits(self) -> None:
-        self.registers.reset_goals()
-        self._adopt_gains()
-
-    def _switch_torque(self) -> None:
-        if self._latched:
-            self._memory[_TORQUE] = 0
-        self._motor.enable(bool(self._memory[_TORQUE]))
-
-    def _adopt_gains(self) -> None:
-        registers = self.registers
-        self._motor.set_gains(
-            registers[Register.POSITION_P_GAIN],
-            registers[Register.POSITION_D_GAIN],
-            abs(registers[Register.GOAL_PWM]) if self._drives else 0,
-        )
-
-    def _new_goal(self) -> None:
-        self._adopt_goal()
-        if self._torque_on_by_goal and not self._memory[_TORQUE]:
-            self._memory[_TORQUE] = 1
-            self._switch_torque()
-
-    def _adopt_goal(self) -> None:
-        (self._goal,) = _GOAL_POSITION.unpack_from(self._memory, _GOAL_ADDRESS)
-        self._motor.set_goal(self._sign * (self._goal - self._offset) + CENTRE_COUNTS)
-
     # Bus watchdog ----------------------------------------------------------------------------
 
     def _arm_watchdog(self) -> None:
+        if self._tripped and not self._memory[_WATCHDOG]:
+            self.drive.adopt_gains()  # The profile counts again.
+        self._tripped = False
         self.watchdog_ns = self._memory[_WATCHDOG] * WATCHDOG_UNIT_NS
         """Silence on the bus after which it stops [ns]; 0 while it does not watch."""
         self.on_watchdog()
@@ -265,35 +277,6 @@ class EmulatedServo:
         if not self._memory[_TORQUE]:
             return
         self._memory[_WATCHDOG] = WATCHDOG_TRIPPED
+        self._tripped = True
         self.watchdog_ns = 0
-        self._motor.set_goal(self._motor.reading().position)
-
-    # Measuring -------------------------------------------------------------------------------
-
-    def _shown(self, reading: Reading) -> int:
-        """Present Position: the encoder through drive mode and homing offset."""
-        return self._sign * (reading.position - CENTRE_COUNTS) + self._offset
-
-    def _measure(self) -> None:
-        """Bring the measured registers, and the hardware error, to the last grid point."""
-        pwm, current, velocity, position, voltage, temperature = self._motor.reading()
-        sign = self._sign
-        velocity *= sign
-        tick = (self._now_ns() - self._booted_ns) // 1_000_000 % REALTIME_TICK_MODULUS
-        moving = abs(velocity) > self._threshold
-        if temperature > self._hottest:
-            self._raise(HardwareError.OVERHEATING)
-        if not self._lowest <= voltage <= self._highest:
-            self._raise(HardwareError.INPUT_VOLTAGE)
-        PRESENT.pack_into(
-            self._memory, _PRESENT, tick, moving, 0, sign * pwm, sign * current, velocity,
-            sign * (position - CENTRE_COUNTS) + self._offset, 0, self._goal, voltage, temperature,
-        )  # fmt: skip
-
-    def _raise(self, error: HardwareError) -> None:
-        """Latch a hardware error; one that the Shutdown mask holds ends the torque."""
-        self._memory[_ERROR] |= error
-        if self.registers[Register.SHUTDOWN] & error:
-            self._latched = True
-            self._memory[_TORQUE] = 0
-            self._switch_torque()
+        self.drive.hold()

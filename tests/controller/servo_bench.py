@@ -17,8 +17,8 @@ FALLEN = 0.15
 
 
 def minibiped(walking=(), overrides=(), imu=True):
-    """The description, with changes of the walking section as ("section.key", value)."""
-    description = load_robot("minibiped", tuple(overrides))
+    """The nominal robot, with changes of the walking section as ("section.key", value)."""
+    description = load_robot("minibiped", ("plant.draws=null", *overrides))
     for path, value in walking:
         *sections, key = path.split(".")
         place = description.walking

@@ -4,7 +4,7 @@ import pytest
 
 from drivers.calibration import RobotCalibration
 from drivers.dynamixel.budget import BusTiming
-from drivers.dynamixel.control_table import Register
+from drivers.dynamixel.control_table import REALTIME_TICK_MODULUS, Register
 from drivers.dynamixel.protocol import (
     ALERT,
     Instruction,
@@ -24,6 +24,7 @@ class FakeServo:
         self.table = bytearray(256)
         self.refuses = set()
         self.silent = False
+        self.booted_ns = -1_000_000_000
         self[Register.MODEL_NUMBER] = number
         self[Register.FIRMWARE_VERSION] = firmware
         self[Register.RETURN_DELAY_TIME] = 250
@@ -43,6 +44,10 @@ class FakeServo:
         if not any(register.address == address for register in self.refuses):
             self.table[address : address + len(data)] = data
 
+    def measure(self, now_ns):
+        tick = (now_ns - self.booted_ns) // 1_000_000 % REALTIME_TICK_MODULUS
+        self[Register.REALTIME_TICK] = tick
+
     @property
     def error(self):
         return ALERT if self[Register.HARDWARE_ERROR_STATUS] else 0
@@ -51,7 +56,8 @@ class FakeServo:
 class FakeBusPort:
     """Servos by id, behind what `ServoBus`, `GroupAccess` and `SdkPort` use of a Port."""
 
-    def __init__(self, servos):
+    def __init__(self, servos, clock):
+        self.clock = clock
         self.name = "left_leg"
         self.url = "fake"
         self.baud = 4_000_000
@@ -110,6 +116,7 @@ class FakeBusPort:
             servo = self.servos.get(servo_id)
             if servo is None or servo.silent:
                 return out if position else b""
+            servo.measure(self.clock.now_ns())
             data = bytes(servo.table[address : address + length])
             if fast:
                 block, crc = fast_status_block(crc, servo.error, servo_id, data)
@@ -151,9 +158,9 @@ def clock():
 
 
 @pytest.fixture
-def fake_port():
+def fake_port(clock):
     """A bus of six XM430-W350 with ids 1 to 6."""
-    return FakeBusPort({servo_id: FakeServo() for servo_id in range(1, 7)})
+    return FakeBusPort({servo_id: FakeServo() for servo_id in range(1, 7)}, clock)
 
 
 @pytest.fixture

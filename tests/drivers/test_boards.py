@@ -13,11 +13,18 @@ from drivers.boards.calibration import (
     ImuConverter,
 )
 from drivers.boards.device_clock import DeviceClock
-from drivers.boards.frames import FootFrame, FrameReader, encode_foot_frame, encode_imu_frame
+from drivers.boards.frames import (
+    CELL_RAIL,
+    FootFrame,
+    FrameReader,
+    encode_foot_frame,
+    encode_imu_frame,
+)
 from drivers.boards.reader import BoardReader
+from drivers.boards.sensors import FootSensor
 from drivers.calibration import load_calibration, save_calibration
 from hil.errors import DescriptionError, InputError
-from hil.interface import NEVER_NS
+from hil.interface import NEVER_NS, SensorFrame
 from hil.robot_files import load_robot
 
 PERIOD_US = 1667
@@ -153,3 +160,49 @@ def test_a_calibration_of_another_robot_is_refused(calibration):
 def test_a_missing_calibration_file_is_named(tmp_path):
     with pytest.raises(InputError, match=r"none\.yaml: cannot be read"):
         load_calibration(tmp_path / "none.yaml")
+
+
+def frames_in_time(reader, line, counts):
+    """Ages after one new frame a tick, of these counts."""
+    ages_ns = []
+    for k, cells in enumerate(counts):
+        now_ns = k * 3_333_000 + LEAST_NS
+        line.waiting += encode_foot_frame(k, k * 3_333, 15, cells)
+        assert reader.poll(now_ns)
+        ages_ns.append(reader.age_ns(now_ns))
+    return ages_ns
+
+
+@pytest.mark.parametrize("noisy", [True, False])
+def test_a_board_whose_values_stand_still_is_not_believed(noisy):
+    line = Line()
+    reader = BoardReader(line, LEAST_NS, 1_667_000, 3_333_333, noisy)
+    moving = [(k, 0, 0, 0) for k in range(10)]
+    ages_ns = frames_in_time(reader, line, moving + [moving[-1]] * 20)
+    assert max(ages_ns[:14]) == LEAST_NS
+    assert reader.is_fresh(29 * 3_333_000 + LEAST_NS) == (not noisy)
+    assert ages_ns[-1] == (LEAST_NS + 16 * 3_333_000 if noisy else LEAST_NS)
+    assert frames_in_time(reader, line, [(30, 0, 0, 0)]) == [LEAST_NS]
+
+
+@pytest.mark.parametrize("jump_us", [-2_000_000, -3_000, 3_000, 400_000, 2_000_000])
+def test_a_jump_of_the_boards_clock_costs_no_age(jump_us):
+    line = Line()
+    reader = BoardReader(line, LEAST_NS, 1_667_000, 3_333_333)
+    for k in range(200):
+        now_ns = k * 1_667_000 + LEAST_NS
+        jump = jump_us if k >= 100 else 0
+        line.waiting += encode_foot_frame(k, 5_000_000 + k * 1_667 + jump, 15, (k, k, k, k))
+        reader.poll(now_ns)
+        assert reader.age_ns(now_ns) == pytest.approx(LEAST_NS, abs=50_000)
+
+
+def test_a_cell_at_the_end_of_its_converter_is_invalid_whatever_its_board_says():
+    line = Line()
+    reader = BoardReader(line, LEAST_NS, 1_667_000, 3_333_333)
+    converter = FootConverter(FootCalibration(zero=(0.0,) * 4, scale=(0.001,) * 4))
+    foot, frame = FootSensor(reader, converter), SensorFrame.empty(1)
+    line.waiting += encode_foot_frame(0, 0, 15, (1000, 2000, CELL_RAIL, -CELL_RAIL - 1))
+    foot.read(1, LEAST_NS, frame)
+    assert frame.foot_valid[1].tolist() == [True, True, False, False]
+    assert frame.foot_force[1].tolist() == [1.0, 2.0, 0.0, 0.0]

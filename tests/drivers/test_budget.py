@@ -3,6 +3,7 @@
 import pytest
 
 from drivers.dynamixel import budget, protocol
+from drivers.dynamixel.blocks import WHOLE
 from drivers.dynamixel.budget import BusTiming, bus_budget
 from hil.errors import InputError
 
@@ -16,8 +17,10 @@ def timing(baud):
 def test_sizes_are_those_of_real_packets():
     ids = range(1, 13)
     assert budget.sync_read_size(12) == len(protocol.encode_sync_read(ids, 126, 10))
-    items = [(servo_id, 126, 10) for servo_id in ids]
-    assert budget.bulk_read_size(12) == len(protocol.encode_bulk_read(items))
+    request = len(protocol.encode_read(1, 64, 83))
+    answer = len(protocol.encode_status(1, 0, bytes(83)))
+    idle_ns = budget.wire_time_ns(request + answer, 1_000_000) + budget.TURNAROUND_NS
+    assert budget.idle_time_ns(WHOLE, 1_000_000) == idle_ns
     goals = [(servo_id, bytes(4)) for servo_id in ids]
     assert budget.sync_write_size(12, 4) == len(protocol.encode_sync_write(116, 4, goals))
     blocks = [protocol.FastBlock(0, servo_id, bytes(10)) for servo_id in ids]

@@ -19,6 +19,7 @@ def off():
     with open(sys.argv[1], "w") as stream:
         stream.write("off")
 
+signal.signal(signal.SIGINT, signal.default_int_handler)
 guardian = Guardian(off)
 guardian.start()
 print("ready", guardian._child, flush=True)
@@ -60,7 +61,7 @@ def end(process, word):
 
 def gone(process_id):
     """Whether a process has ended; an orphan is reaped by somebody else, a moment later."""
-    for _ in range(500):
+    for _ in range(2000):
         try:
             with Path(f"/proc/{process_id}/stat").open() as stream:
                 if stream.read().rpartition(")")[2].split()[0] == "Z":

@@ -9,13 +9,13 @@ from drivers.dynamixel.gain_mapping import GainMapping
 from drivers.robot_backend import BusBackend
 from hil.clock import tick_time_ns
 from hil.errors import BackendError, InputError, InvalidCommandError, PortError
-from hil.interface import NEVER_NS, JointCommand, Limit, StopMode
+from hil.interface import NEVER_NS, JointCommand, JointError, Limit, StopMode
 from hil.robot_files import load_robot
 from sim_backends.plant import Plant
 from sim_backends.virtual.robot import VirtualRobot
 
 RATE = 300
-DESCRIPTION = load_robot("minibiped")
+DESCRIPTION = load_robot("minibiped", ("plant.draws=null",))
 STATISTICS = {
     "bus_utilisation_pct",
     "bus_crc_errors",
@@ -271,3 +271,75 @@ def test_the_bus_leaves_time_for_the_controller(rig):
     rig.backend.arm()
     durations = [duration_ns for _, duration_ns in rig.run(60)]
     assert max(durations) < 0.6 * 1e9 / RATE
+
+
+@pytest.mark.parametrize(
+    ("fault", "own", "found"),
+    [
+        ("silent@0+0.005", 1, 0),
+        ("silent@0+0.012", 4, 0),
+        ("silent@0", 60, 0),
+        ("frozen@0", 60, 0),
+        ("reboot@0", 60, 0),
+        ("lost_torque@0", 0, JointError.TORQUE_LOST),
+        ("watchdog_trip@0", 0, JointError.STOPPED),
+        ("alert=overload@0", 0, JointError.TORQUE_LOST | 32),
+    ],
+)
+def test_what_a_servos_fault_costs(rig, fault, own, found):
+    rig.backend.open()
+    rig.backend.arm()
+    list(rig.run(60))
+    rig.robot.inject(f"servo:left_hip_pitch:{fault}")
+    lost, neighbours = 0, 0
+    for frame, duration_ns in rig.run(60):
+        assert duration_ns < 0.7 * 1e9 / RATE
+        lost += not frame.joint_valid[2]
+        neighbours += (~frame.joint_valid).sum() - (not frame.joint_valid[2])
+    assert lost == own
+    assert neighbours <= 3
+    assert frame.joint_error.tolist() == [0, 0, found] + [0] * 9
+
+
+def test_a_servo_that_rebooted_is_reported_and_gets_no_torque(rig):
+    rig.backend.open()
+    rig.backend.arm()
+    list(rig.run(10))
+    rig.robot.inject("servo:right_knee:reboot@0")
+    *_, (frame, _) = rig.run(90)
+    assert frame.joint_valid.all()
+    error = JointError(int(frame.joint_error[9]))
+    assert JointError.REBOOTED in error
+    assert JointError.TORQUE_LOST in error
+    assert rig.registers(Register.TORQUE_ENABLE) == [1] * 9 + [0] + [1] * 2
+
+
+@pytest.mark.parametrize("kind", ["drop", "flip", "truncate", "duplicate", "garbage", "echo"])
+def test_a_bad_wire_costs_samples_and_nothing_else(rig, kind):
+    rig.backend.open()
+    rig.backend.arm()
+    list(rig.run(10))
+    rig.robot.inject(f"bus:left_leg:{kind}=0.05@0")
+    valid = []
+    for frame, duration_ns in rig.run(200):
+        assert duration_ns < 1e9 / RATE
+        np.testing.assert_allclose(frame.joint_position, DESCRIPTION.start_position, atol=0.1)
+        assert not frame.joint_error.any()
+        valid.append(frame.joint_valid.copy())
+    assert np.mean(valid) > 0.9
+    assert np.array(valid)[:, 6:].all()
+
+
+def test_a_stuck_board_ages_and_a_jumping_clock_does_not(rig):
+    rig.backend.open()
+    list(rig.run(20))
+    rig.robot.inject("board:left_foot:stuck@0")
+    rig.robot.inject("board:right_foot:clock_jump=0.2@0")
+    rig.robot.inject("board:imu:clock_jump@0")
+    *_, (frame, _) = rig.run(40)
+    assert not frame.foot_valid[0].any()
+    assert frame.foot_age_ns[0] > 100_000_000
+    assert frame.foot_valid[1].all()
+    assert frame.foot_age_ns[1] < 10_000_000
+    assert frame.imu_valid
+    assert frame.imu_age_ns < 10_000_000

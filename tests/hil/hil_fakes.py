@@ -31,8 +31,11 @@ class FakeBackend:
         self.frame = SensorFrame.empty(JOINTS)
         self.frame.joint_age_ns[:] = 0
         self.frame.joint_valid[:] = True
+        self.frame.joint_position[[3, 9]] = 0.1  # knees, inside their range
         self.frame.imu_age_ns = 0
         self.frame.foot_age_ns[:] = 0
+        self.frame.foot_valid[:] = True
+        self.frame.foot_force[:] = 25.7 / 8
         self.applied = AppliedCommand.zeros(JOINTS)
         self.journal = []
         self.written = []

@@ -179,14 +179,14 @@ def test_a_recording_can_be_exported_and_drawn_again(tmp_path, monkeypatch):
     session = make_session(world=True, out=folder, duration_s=0.5)
     run(session, progress=False)
     rows = list(csv.DictReader(io.StringIO(stride("export", str(folder)).stdout)))
-    assert len(rows) == 450 + 150
-    assert float(rows[-1]["time_s"]) == pytest.approx(149 / 300)
-    assert float(rows[-1]["command.position.left_knee"]) == pytest.approx(0.1)
+    assert len(rows) == 450 + 150 + 330  # start-up, walk, way down
+    assert float(rows[-1]["time_s"]) == pytest.approx(479 / 300)
+    assert float(rows[-331]["command.position.left_knee"]) == pytest.approx(0.1)
     assert "frame.foot_force.right.rear_left" in rows[0]
     file = tmp_path / "ticks.jsonl"
     assert stride("export", str(folder), "--format", "jsonl", "--out", str(file)).exit_code == 0
     ticks = [json.loads(line) for line in file.read_text().splitlines()]
-    assert len(ticks) == 600
+    assert len(ticks) == 930
     assert ticks[0]["frame"]["joint_voltage"] == [None] * 12
     picture = tmp_path / "again.svg"
     assert stride("plot", str(folder), "--out", str(picture)).exit_code == 0

@@ -14,9 +14,9 @@ STAND_UP = -450
 ERRORS = [RuntimeError("boom"), BackendError("port lost"), KeyboardInterrupt(), SystemExit(143)]
 
 
-def run(session):
+def run(session, *, sits=False):
     ticks = Collector()
-    loop = Loop(session, (ticks,))
+    loop = Loop(session, (ticks,), sits=sits)
     session.backend.open()
     return loop, ticks
 
@@ -45,6 +45,47 @@ def test_start_up_moves_smoothly_from_the_pose_found_to_the_start_pose():
     assert np.allclose(ramp[0], present, atol=1e-4)
     assert np.allclose(ramp[300:], target)
     assert np.abs(np.diff(ramp, axis=0)).max() < 1.6 * np.abs(target - present).max() / 300
+
+
+def test_a_walk_ends_on_bent_legs_before_torque_goes_off():
+    session = make_session(world=True)
+    loop, ticks = run(session, sits=True)
+    outcome = loop.run()
+    sitting = session.description.sit
+    assert ticks.ticks[-1] == pytest.approx(300 + (sitting.time + 0.3) * 300, abs=1)
+    down = np.array(session.backend.written[750:])
+    goal = [sitting.joints.get(name, 0.0) for name in session.description.joint_names]
+    assert np.allclose(down[-1], goal)
+    assert np.abs(np.diff(down, axis=0)).max() < 1.6 * np.abs(goal).max() / (300 * sitting.time)
+    assert outcome.faults == [] and session.controller.ticks == 300
+    assert session.backend.journal[-3:] == ["soft", "torque_off", "close"]
+
+
+def test_one_command_that_is_not_sound_is_passed_over():
+    session = make_session()
+    step = session.controller.step
+
+    def once(estimate, reference):
+        command = step(estimate, reference)
+        command.torque[2] = np.nan if session.controller.ticks == 50 else 0.0
+        return command
+
+    session.controller.step = once
+    loop, _ = run(session)
+    outcome = loop.run()
+    assert [(fault.name, fault.reaction) for fault in outcome.faults] == [
+        ("InvalidCommandError", "none")
+    ]
+    assert len(session.backend.written) == 750 and np.isfinite(session.backend.written).all()
+
+
+def test_a_joint_outside_its_range_is_never_armed():
+    session = make_session()
+    session.backend.frame.joint_position[3] = -0.4
+    loop, _ = run(session)
+    with pytest.raises(BackendError, match=r"left_knee -0\.40 rad"):
+        loop.run()
+    assert "arm" not in session.backend.journal
 
 
 def test_a_robot_that_starts_moving_walks_at_once():
@@ -175,7 +216,8 @@ def test_a_command_that_is_not_finite_is_never_sent():
     loop, _ = run(session)
     with pytest.raises(ValueError, match="left_hip_pitch"):
         loop.run()
-    assert len(session.backend.written) == 450  # start-up only
+    assert session.controller.ticks == 2  # the second one in a row ends the walk
+    assert np.isfinite(session.backend.written).all()
     assert session.backend.journal[-2:] == ["torque_off", "close"]
 
 
@@ -193,10 +235,15 @@ def test_a_signal_stops_the_robot_at_the_end_of_the_tick(number, error):
 
     session.controller.step = interrupted
     before = signal.getsignal(number)
-    loop, ticks = run(session)
+    loop, _ = run(session)
     with pytest.raises(error):
         loop.run()
-    assert ticks.ticks[-1] == 10
+    assert session.controller.ticks == 11
+    assert [(fault.source, fault.reaction) for fault in loop.outcome.faults] == [
+        ("operator", "soft_stop")
+    ]
+    sitting = session.description.sit.joints["left_knee"]
+    assert session.backend.written[-1][3] == pytest.approx(sitting)
     assert session.backend.journal[-3:] == ["soft", "torque_off", "close"]
     assert signal.getsignal(number) is before
 

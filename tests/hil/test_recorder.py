@@ -36,7 +36,7 @@ from hil.run_folder import make_meta
 session = make_session(world=True, clock=MonotonicClock(), duration_s=1e4, realtime=True)
 recorder = Recorder(Path(sys.argv[1]), make_meta(session), truth=True, progress=False)
 print(recorder._process.pid, flush=True)
-Loop(session, (recorder,)).run()
+Loop(session, (recorder,), sits=False).run()
 """
 
 
@@ -46,7 +46,7 @@ def record(folder, **request):
     recorder = Recorder(folder, make_meta(session), truth=True, progress=False)
     with recorder:
         session.backend.open()
-        Loop(session, (trace, recorder)).run()
+        Loop(session, (trace, recorder), sits=False).run()
     return session, trace.trace(), recorder
 
 
@@ -71,8 +71,8 @@ def test_the_file_is_one_that_any_mcap_reader_opens(tmp_path):
         summary = reader.get_summary()
         topics_seen = {channel.topic for channel in summary.channels.values()}
         assert topics_seen == {
-            *("/command", "/applied", "/frame", "/estimate", "/reference", "/status", "/timing"),
-            "/truth",
+            *("/command", "/applied", "/frame", "/estimate", "/reference", "/status", "/safety"),
+            *("/timing", "/truth"),
         }
         assert set(summary.statistics.channel_message_counts.values()) == {750}
         times = [message.log_time for _, _, message in reader.iter_messages(topics="/timing")]
@@ -184,7 +184,7 @@ def test_in_real_time_a_full_ring_drops_and_counts(tmp_path):
     os.kill(recorder._process.pid, signal.SIGSTOP)
     try:
         session.backend.open()
-        Loop(session, (recorder,)).run()
+        Loop(session, (recorder,), sits=False).run()
     finally:
         os.kill(recorder._process.pid, signal.SIGCONT)
     recorder.close()
@@ -198,7 +198,7 @@ def test_in_lockstep_nothing_is_dropped_however_slow_the_disk(tmp_path):
     recorder = Recorder(tmp_path, make_meta(session), truth=True, progress=False)
     with recorder:
         session.backend.open()
-        Loop(session, (recorder,)).run()
+        Loop(session, (recorder,), sits=False).run()
     assert recorder.dropped == 0
     assert len(read_recording(tmp_path).rows) == 6450
 

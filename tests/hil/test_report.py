@@ -11,7 +11,7 @@ from hil_walks import walk
 from hil.gait_report import disequilibrium, gait_figures, heading_error, mean_speed, percentiles_ms
 from hil.loop import Outcome
 from hil.report import make_report
-from hil.safety import Fault
+from hil.safety.severity import Fault
 
 WEIGHT = 100.0
 DESIGN_KEYS = [

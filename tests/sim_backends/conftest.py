@@ -9,17 +9,20 @@ from sim_backends.plant import Plant
 from sim_backends.virtual.motors import nominal_motors
 
 RATE = 300
+NOMINAL = "plant.draws=null"
 
 
 @pytest.fixture(scope="session")
 def minibiped():
-    return load_robot("minibiped")
+    """The robot as its data sheets have it, with nothing hidden."""
+    return load_robot("minibiped", (NOMINAL,))
 
 
 @pytest.fixture
 def make_plant(minibiped):
     def make(*overrides, rate=RATE, seed=0):
-        description = load_robot("minibiped", overrides) if overrides else minibiped
+        overrides = (NOMINAL, *overrides)
+        description = load_robot("minibiped", overrides) if overrides[1:] else minibiped
         return Plant(description, rate, seed, nominal_motors(description))
 
     return make

@@ -127,7 +127,7 @@ def test_a_latency_of_several_ticks_keeps_every_command(minibiped):
         np.ptp(sway(description, direct(description)[0])[0][-63:, 0])
         for description in (minibiped, slow)
     ]
-    assert swings[1] == pytest.approx(swings[0], rel=0.05)
+    assert swings[1] == pytest.approx(swings[0], rel=0.1)
 
 
 def test_joint_readings_have_the_grain_of_their_registers(minibiped):
@@ -146,3 +146,19 @@ def test_parts_that_do_not_fit_are_refused(minibiped):
         MujocoBackend(minibiped, plant, None, RATE)
     with pytest.raises(InputError, match="plant made for 300 Hz, loop at 225 Hz"):
         MujocoBackend(minibiped, plant, mapping, 225)
+
+
+def test_frames_show_what_a_servo_has_shut_down_for(minibiped):
+    """The same latched error that the registers of the bus would show."""
+    frames = []
+    for make in (direct, wired):
+        backend, plant = make(minibiped)
+        backend.open()
+        backend.read()
+        backend.arm()
+        plant.servos.heat.case[3] = 95.0
+        for _ in range(40):
+            backend.clock.sleep_until_ns(backend.clock.now_ns() + 5_000_000)
+            frame = backend.read()
+        frames.append((frame.joint_error[3] != 0, frame.joint_error[4], plant.servos.enabled[3]))
+    assert frames == [(True, 0, False)] * 2

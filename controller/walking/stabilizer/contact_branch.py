@@ -47,7 +47,8 @@ def full_contact_branch(response: ResponseModel) -> tuple[Floats, Floats]:
 def _rows(response: ResponseModel) -> Ints:
     """All rows of the foot's contacts and the other active ones, in order."""
     wanted = response.data.efc_state == _QUADRATIC
-    for row, _, size in response.rows:
-        wanted[row : row + size] = True
+    sizes = response.data.contact.dim
+    for row, _, contact in response.rows:
+        wanted[row : row + sizes[contact]] = True
     found: Ints = np.flatnonzero(wanted)
     return found

@@ -10,10 +10,11 @@ import mujoco
 import numpy as np
 
 from controller.robot_model import RobotModel
+from controller.selection import selection
 from controller.walking.stabilizer.reduced_models import ReducedModel
 from controller.walking.stabilizer.sample_box import Sample
 from hil.description import RobotDescription
-from hil.interface import SIDES, Floats, Ints
+from hil.interface import SIDES, Floats
 
 TOE = 4
 """Place of the toe after the four corners in a foot's forces."""
@@ -63,18 +64,21 @@ class ResponseModel:
         self._index_state()
         names = [mujoco.mj_id2name(model, mujoco.mjtObj.mjOBJ_JOINT, j) for j in range(model.njnt)]
         shared = [name for name in description.joint_names if name in names]
-        self._joints = np.array([description.joint_names.index(name) for name in shared])
-        self._dofs = np.array([model.joint(name).dofadr[0] for name in shared])
+        joints = [description.joint_names.index(name) for name in shared]
+        self._joints = selection(np.array(joints))
+        self._dofs = selection(np.array([model.joint(name).dofadr[0] for name in shared]))
         self._feet = [self._foot(description, side) for side in SIDES if f"{side}_knee" in names]
         self._sides = [i for i, side in enumerate(SIDES) if f"{side}_knee" in names]
         self._qpos, self._qvel, self._applied = data.qpos, data.qvel, data.qfrc_applied
+        self._acceleration, self._first_guess = data.qacc, data.qacc_warmstart
+        self._whole_qpos, self._whole_qvel = robot.data.qpos, robot.data.qvel
         masses = robot.model.body_mass[reduced.removed]
         self._weights = masses / max(float(masses.sum()), 1e-12)
         self._removed_weight = float(masses.sum()) * robot.gravity
         self.dofs: list[int] = []
         """Degrees of freedom of the sample's joints."""
         self.rows: list[tuple[int, int, int]] = []
-        """Of each contact of the stance foot: first constraint row, corner or `TOE`, rows."""
+        """Of each contact of the stance foot: first constraint row, corner or `TOE`, contact."""
 
     def _index_state(self) -> None:
         """Where the state of the kept bodies is in the whole model."""
@@ -88,8 +92,8 @@ class ResponseModel:
                 positions += range(first, first + (7 if free else 1))
                 first = int(whole.jnt_dofadr[joint])
                 velocities += range(first, first + (6 if free else 1))
-        self._positions: Ints = np.array(positions)
-        self._velocities: Ints = np.array(velocities)
+        self._positions = selection(np.array(positions))
+        self._velocities = selection(np.array(velocities))
 
     def _foot(self, description: RobotDescription, side: str) -> _Foot:
         model, data = self.model, self.data
@@ -109,16 +113,15 @@ class ResponseModel:
 
         `torques` [N·m], shape (n,), in description order.
         """
-        source = self._robot.data
-        self._qpos[:] = source.qpos[self._positions]
-        self._qvel[:] = source.qvel[self._velocities]
-        self._applied[:] = 0.0
+        self._qpos[:] = self._whole_qpos[self._positions]
+        self._qvel[:] = self._whole_qvel[self._velocities]
         self._applied[self._dofs] = torques[self._joints]
         foot = self._feet[self._sides.index(stance)]
         self.dofs = foot.dofs
         self._base = self._applied[foot.dofs].tolist()
         if self._removed_weight:
             self._hang_weight()
+        self._first_guess[:] = self._acceleration  # of the last sample: saves iterations
         mujoco.mj_forwardSkip(self.model, self.data, _START, 1)
         self._find_contacts(foot)
         return self._read()
@@ -128,6 +131,7 @@ class ResponseModel:
         applied, base = self._applied, self._base
         for dof, own, extra in zip(self.dofs, base, sample, strict=True):
             applied[dof] = own + extra
+        self._first_guess[:] = self._acceleration
         mujoco.mj_forwardSkip(self.model, self.data, _KEEP_STATE, 1)
         return self._read()
 
@@ -145,21 +149,20 @@ class ResponseModel:
         self.rows = []
         contact = self.data.contact
         points, addresses = contact.pos.tolist(), contact.efc_address.tolist()
-        sizes = contact.dim.tolist()
         centre, axes = foot.centre.tolist(), foot.axes.tolist()
         for i, pair in enumerate(contact.geom.tolist()):
             if addresses[i] < 0:
                 continue
             if foot.sole in pair:
-                self.rows.append((addresses[i], _corner(points[i], centre, axes), sizes[i]))
+                self.rows.append((addresses[i], _corner(points[i], centre, axes), i))
             elif foot.toe in pair:
-                self.rows.append((addresses[i], TOE, sizes[i]))
+                self.rows.append((addresses[i], TOE, i))
 
     def _read(self) -> list[float]:
         forces = [0.0] * 5
-        rows = self.data.efc_force
+        rows: list[float] = self.data.efc_force.tolist()
         for row, place, _ in self.rows:
-            forces[place] += float(rows[row])
+            forces[place] += rows[row]
         return forces
 
 

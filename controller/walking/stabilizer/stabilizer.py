@@ -56,6 +56,7 @@ class Stabilizer:
         self._evaluation = Evaluation(config.band, config.load * robot.weight)
         self._scale = robot.weight * robot.leg_length
         self._limit = np.array([joint.torque_limit for joint in description.joints])
+        self._least = -self._limit
         self._joints = [
             np.array([description.joint_names.index(f"{side}_{joint}") for joint in SAMPLE_JOINTS])
             for side in SIDES
@@ -69,22 +70,27 @@ class Stabilizer:
         self.statistics = Statistics()
 
     def add_torques(
-        self, torques: Floats, stance: int, flat: bool, measured: Floats, swing_contact: bool
-    ) -> Floats:
+        self,
+        torques: Floats,
+        stance: int,
+        flat: bool,
+        measured: list[float],
+        swing_contact: bool,
+    ) -> Sample:
         """Add the extra torques to the joint torques [N·m], shape (n,), in place.
 
-        `measured` are the forces on the stance foot's corners and toe [N], shape (5,), of the
-        last tick. Returns the extra torques of the three joints [N·m], shape (3,).
+        `measured` are the forces on the stance foot's corners and toe [N], of the last tick.
+        Returns the extra torques of the three joints [N·m].
         """
         self._correct(stance, measured)
         self.solution = NOTHING
         self.statistics.ticks += 1
         response = self._models.choose(stance, swing_contact)
-        if self._is_calm(measured.tolist(), flat):
+        if self._is_calm(measured, flat):
             self._predicted = None
-            return np.zeros(3)
+            return NO_TORQUE
         np.minimum(torques, self._limit, out=torques)
-        np.maximum(torques, -self._limit, out=torques)
+        np.maximum(torques, self._least, out=torques)
         self._predicted = forces = response.place(torques, stance)
         initial = distribution(corrected(forces, self._offset))
         self._searching = False
@@ -95,11 +101,13 @@ class Stabilizer:
             self._searching = True
             problem = Problem(response, self._evaluation, box, initial, flat, self._offset)
             self._search(problem)
-        extra = np.array(self.solution.sample or NO_TORQUE)
+        extra = self.solution.sample
+        if extra is None:
+            return NO_TORQUE
         torques[self._joints[stance]] += extra
         return extra
 
-    def _correct(self, stance: int, measured: Floats) -> None:
+    def _correct(self, stance: int, measured: list[float]) -> None:
         """Adopt a part of what the cells show beyond the last prediction; new foot, new start."""
         if stance != self._stance:
             self._stance, self._offset, self._predicted = stance, [0.0] * 5, None
@@ -109,7 +117,7 @@ class Stabilizer:
         part = self._config.correction
         self._offset = [
             b + part * (cell - model - b)
-            for b, cell, model in zip(self._offset, measured.tolist(), self._predicted, strict=True)
+            for b, cell, model in zip(self._offset, measured, self._predicted, strict=True)
         ]
 
     def _is_calm(self, measured: list[float], flat: bool) -> bool:

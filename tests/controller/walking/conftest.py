@@ -66,21 +66,6 @@ def placed(human):
     )
 
 
-HANDS = (
-    "walking.hands={target: [0.19, 0.16, 0.365], point: [0.0, 0.15, 0.0], "
-    "elbow_direction: [-0.3, 0.3, -1.0]}",
-)
-"""Hands at the seed's place; off in the robot file."""
-WARY = (
-    *HANDS,
-    "walking.coronal_alteration.gain=0.03",
-    "walking.placement.speed_offset=[0.1, 0.1]",
-    "walking.alteration.bounds=[-0.2, 0.05]",
-    "walking.recovery.threshold=0.35",
-)
-"""Every optional component on; off in the robot file, which says why."""
-
-
 class HumanWalk:
     """The human on the simulated plant, with true states; `walk` returns what it did."""
 

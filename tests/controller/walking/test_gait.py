@@ -46,3 +46,13 @@ def test_flat_foot_is_latched_until_the_next_step():
         walk.advance(DT, swing_load=0.0)
     assert walk.steps == 1
     assert not walk.foot_flat
+
+
+def test_noise_of_one_tick_does_not_make_a_foot_flat():
+    walk = Gait(CONFIG.model_copy(update={"flat_time": 2 * DT}), weight=700.0)
+    found = []
+    for corners in (3, 2, 3, 3, 2, 3, 3, 3):
+        walk.advance(DT, swing_load=0.0)
+        walk.update_foot_flat(corners)
+        found.append(walk.foot_flat)
+    assert found == [False] * 7 + [True]

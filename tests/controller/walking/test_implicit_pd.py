@@ -46,7 +46,7 @@ def test_coupling_is_the_derivative_of_the_law(human, human_config):
     state = random_state(human, seed=5, speed=0.1)
     base = law.torques(state)
     implicit = ImplicitPd(law.robot, law.groups, law.tracking, law.trunk, H)
-    coupling = implicit._law_coupling(law.hips, SHARES)[law.robot.dof_addresses] / H
+    coupling = implicit._law_coupling(law.hips, SHARES, True)[law.robot.dof_addresses] / H
     step = 1e-3
     for joint, dof in enumerate(law.robot.dof_addresses):
         state.joint_velocity[joint] += step

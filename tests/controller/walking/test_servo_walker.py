@@ -119,3 +119,29 @@ def test_a_robot_without_six_leg_joints_is_refused():
     short = description.model_copy(update={"joints": description.joints[:-1]})
     with pytest.raises(DescriptionError, match="right_ankle_roll"):
         ServoWalker(short, 300)
+
+
+def test_the_swing_leg_is_asked_for_no_more_than_its_servos_can_do():
+    bench = ServoBench(minibiped())
+    share = bench.walker.config.governor.share
+    fastest = 0.0
+    for tick in range(4 * 300):
+        bench.run(Reference(speed=0.3))
+        if tick > 2 * 300:
+            swing = bench.walker._legs[1 - bench.walker.status.stance][2:5]
+            fastest = max(fastest, float(np.abs(bench.walker._command.velocity[swing]).max()))
+    assert 2.0 < fastest <= share * 4.82 * 1.02
+
+
+def test_a_robot_with_wrong_joint_zeros_learns_its_soles_and_its_com():
+    bench = ServoBench(minibiped(overrides=("plant.joint_zero=0.012",)))
+    for _ in range(5 * 300):
+        bench.run(Reference(speed=0.1))
+    step = bench.walker._step
+    assert np.abs(step.sole_trim.value).max() > 0.003
+    assert np.abs(step.trim.value).max() > 0.0005
+    with_trim = step.landing
+    step.trim.value = [(0.0, 0.0), (0.0, 0.0)]
+    step.gait.phase = 0.5
+    bench.run(Reference(speed=0.1))
+    assert step.landing != pytest.approx(with_trim, abs=2e-4)

@@ -64,7 +64,7 @@ def test_target_velocities_are_differences_within_the_limit(links):
     leg.begin_step()
     leg.update(HIP, np.array([-0.1, 0.0, 0.1]), lateral, pelvis)
     assert leg.knee_rate == 0.0
-    assert not leg.hip_rate.any()
+    assert leg.hip_rate == (0.0, 0.0, 0.0)
 
 
 def test_turned_pelvis_does_not_move_the_thigh(links):

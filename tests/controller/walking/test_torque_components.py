@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from controller.robot_model import RobotModel
-from controller.walking.ankle_limit import SoleLevers, limited, sole_levers
+from controller.walking.ankle_limit import SoleLevers, ground_slope, limited, sole_levers
 from controller.walking.gravity_compensation import GravityCompensation
 from controller.walking.joint_groups import JointGroups
 from controller.walking.pose_tracking import PoseTracking
@@ -178,17 +178,32 @@ def test_virtual_torques_push_the_body_forward(human, human_config):
 
 def test_sole_of_the_human(human):
     levers = sole_levers(RobotModel(human), human.feet["left"])
-    assert (levers.front, levers.rear, levers.half_width) == pytest.approx((0.125, 0.05, 0.025))
+    found = (levers.front, levers.rear, levers.half_width, levers.height)
+    assert found == pytest.approx((0.125, 0.05, 0.025, 0.053))
 
 
+LEVERS = SoleLevers(front=0.125, rear=0.05, half_width=0.025, height=0.05)
 TORQUE = st.floats(-300, 300)
+SLOPE = st.tuples(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5))
 
 
-@given(st.floats(0, 1500), TORQUE, TORQUE, st.floats(0.05, 1))
-def test_ankle_torque_keeps_the_pressure_within_its_part_of_the_sole(load, pitch, roll, fraction):
-    levers = SoleLevers(front=0.125, rear=0.05, half_width=0.025)
-    p, r = limited(levers, fraction, load, pitch, roll)
-    assert -0.05 * fraction * load - 1e-9 <= p <= 0.125 * fraction * load + 1e-9
-    assert abs(r) <= 0.025 * fraction * load + 1e-9
+@given(st.floats(1, 1500), SLOPE, TORQUE, TORQUE, st.floats(0.05, 1))
+def test_ankle_torque_keeps_the_pressure_within_its_part_of_the_sole(
+    load, slope, pitch, roll, fraction
+):
+    """By the moments about the ankle of ankle torque and ground force, which balance."""
+    p, r = limited(LEVERS, fraction, load, slope, pitch, roll)
+    force = load * np.array([*slope, 1.0])
+    pressure = np.array([p / load - 0.05 * slope[0], -r / load - 0.05 * slope[1], -0.05])
+    assert (np.array([r, p]) + np.cross(pressure, force)[:2]) == pytest.approx([0, 0], abs=1e-9)
+    assert -0.05 * fraction - 1e-9 <= pressure[0] <= 0.125 * fraction + 1e-9
+    assert abs(pressure[1]) <= 0.025 * fraction + 1e-9
     # A torque within the bounds passes unchanged.
-    assert limited(levers, fraction, load, p, r) == (p, r)
+    assert limited(LEVERS, fraction, load, slope, p, r) == pytest.approx((p, r))
+
+
+def test_ground_force_points_at_the_centre_of_mass_in_the_foots_heading():
+    """A body 0.3 m ahead of and 0.1 m left of a foot that is turned left by a quarter."""
+    com, ankle = np.array([2.3, 1.1, 1.05]), np.array([2.0, 1.0, 0.05])
+    slope = ground_slope(LEVERS, com, ankle, about_z(np.pi / 2) @ about_x(0.2))
+    assert slope == pytest.approx((0.1 / 1.05, -0.3 / 1.05))

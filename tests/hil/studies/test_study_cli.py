@@ -92,3 +92,10 @@ def test_a_fall_is_a_result():
     result = reach_speed(SpeedCase(request=request, sagittal=0.5, coronal=0.0))
     assert result["ending"] == "fell" and result["stopped_s"] < 2.0
     assert result["speed_mps"] is None
+
+
+def test_walk_as_long_as_its_steps():
+    case = SpeedCase(request=human(duration_s=1.0), sagittal=0.5, coronal=0.0, steps=20)
+    result = reach_speed(case)
+    assert result["ending"] is None
+    assert 20 <= result["steps"] <= 22

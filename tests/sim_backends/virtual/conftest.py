@@ -20,7 +20,8 @@ class HandMotor:
     def __init__(self):
         self.measured = Reading(0, 0, 0, 2048, 120, 30)
         self.on = False
-        self.goal = self.gains = None
+        self.told = {}
+        self.errors = 0
 
     def measure(self, **values):
         self.measured = self.measured._replace(**values)
@@ -28,25 +29,40 @@ class HandMotor:
     def reading(self):
         return self.measured
 
+    def trajectory(self):
+        return 0, self.measured.position
+
     def enable(self, on):
         self.on = on
 
-    def set_goal(self, counts):
-        self.goal = counts
+    def hardware_error(self):
+        return self.errors
 
-    def set_gains(self, *gains):
-        self.gains = gains
+    def reboot(self):
+        self.errors = 0
+
+    def __getattr__(self, name):
+        """`set_x` remembers what it was told under x."""
+        if not name.startswith("set_"):
+            raise AttributeError(name)
+        return lambda *values: self.told.update({name[4:]: values})
+
+    @property
+    def goal(self):
+        return self.told["goal"][0]
 
 
 class Bench:
     """Servos on a wire without time: packets in, answers out."""
 
-    def __init__(self, ids, model="XM430-W350"):
+    def __init__(self, ids, model="XM430-W350", firmware=48):
         self.now_ns = 0
         self.motors = {servo_id: HandMotor() for servo_id in ids}
         self.servos = {
             servo_id: EmulatedServo(
-                RegisterFile(find_servo_model(model), servo_id, BAUD), motor, lambda: self.now_ns
+                RegisterFile(find_servo_model(model), servo_id, BAUD, firmware),
+                motor,
+                lambda: self.now_ns,
             )
             for servo_id, motor in self.motors.items()
         }
@@ -62,6 +78,15 @@ class Bench:
     def set(self, servo_id, **registers):
         for name, value in registers.items():
             self.servos[servo_id].registers[Register[name]] = value
+
+
+@pytest.fixture
+def patient_sdk(monkeypatch):
+    """The SDK waits 2·16 + 2 ms for an answer, which a busy machine may miss: here ten times that.
+
+    Only its constant for the adapter's latency timer is raised, as users of slow adapters do.
+    """
+    monkeypatch.setattr("dynamixel_sdk.port_handler.LATENCY_TIMER", 160)
 
 
 @pytest.fixture

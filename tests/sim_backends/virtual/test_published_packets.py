@@ -2,6 +2,7 @@
 
 import pytest
 
+from drivers.dynamixel import protocol
 from drivers.dynamixel.control_table import Register
 from tests.sim_backends.virtual.conftest import Bench
 
@@ -34,11 +35,14 @@ FAST_SYNC_READ = raw("FFFFFD00 FE 0A00 8A 84000400030704 20F2")
 FAST_SYNC_ANSWER = raw(
     "FFFFFD00 FE 1900 55 00 03 A6000000 8408 00 07 1F080000 16CA 00 04 FF030000 D19E"
 )
+FAST_BULK_ANSWER = raw("FFFFFD00 FE 1400 55 00 03 A6000000 67A4 00 07 A501 2474 00 04 1F D9C1")
+BACKUP = raw("FFFFFD00 01 0800 20 01 4354524C 16F5")
+RESTORE = raw("FFFFFD00 01 0800 20 02 4354524C 9EF5")  # The manual misprints the CRC: 92F5.
 
 
 @pytest.fixture
 def examples():
-    """The servos of the examples: XM430-W210 with firmware 38."""
+    """The servos of the examples: XM430-W210 that answer to a ping with firmware 38."""
     bench = Bench([1, 2], "XM430-W210")
     for servo_id in (1, 2):
         bench.set(servo_id, FIRMWARE_VERSION=38)
@@ -77,6 +81,31 @@ def test_published_fast_sync_read_gets_the_published_answer():
     for servo_id, position in ((3, 166), (7, 2079), (4, 1023)):
         bench.motors[servo_id].measure(position=position)
     assert bench.ask(FAST_SYNC_READ).hex(" ") == FAST_SYNC_ANSWER.hex(" ")
+
+
+def test_the_published_answer_to_a_fast_bulk_read():
+    """The request's own CRC is misprinted there: it is that of the fast sync read."""
+    bench = Bench([3, 4, 7], "XC330-T288")
+    bench.motors[3].measure(position=166)
+    bench.motors[7].measure(pwm=421)
+    bench.motors[4].measure(temperature=31)
+    items = [(3, 132, 4), (7, 124, 2), (4, 146, 1)]
+    request_packet = protocol.encode_bulk_read(items, fast=True)
+    assert request_packet[:-2] == raw("FFFFFD00 FE 1200 9A 0384000400 077C000200 0492000100")
+    assert bench.ask(request_packet).hex(" ") == FAST_BULK_ANSWER.hex(" ")
+
+
+def test_published_backup_and_restore():
+    bench = Bench([1], "XC330-T288")
+    registers = bench.servos[1].registers
+    assert bench.ask(BACKUP) == STATUS_OK
+    assert registers[Register.BACKUP_READY] == 1
+    bench.set(1, RETURN_DELAY_TIME=99)
+    assert bench.ask(RESTORE) == STATUS_OK
+    assert registers[Register.RETURN_DELAY_TIME] == 0
+    assert bench.ask(PING_1) == b""
+    bench.now_ns += 1_000_000_000
+    assert bench.ask(PING_1)
 
 
 def test_published_writes_have_their_effect(examples):

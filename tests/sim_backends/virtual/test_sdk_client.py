@@ -66,11 +66,12 @@ def test_ping_and_broadcast_ping(rig):
 
 
 def test_read_and_write(rig):
-    _, port, sdk = rig
+    made, port, sdk = rig
     assert sdk.write2ByteTxRx(port, 1, 84, 640) == (COMM_SUCCESS, 0)
     assert sdk.read2ByteTxRx(port, 1, 84) == (640, COMM_SUCCESS, 0)
     assert sdk.write2ByteTxRx(port, 1, 84, 20000) == (COMM_SUCCESS, StatusError.DATA_RANGE)
-    assert sdk.read4ByteTxRx(port, 3, 132)[0] == 1714
+    position, result, _ = sdk.read4ByteTxRx(port, 3, 132)
+    assert (position, result) == (made.world.servos.counts[2], COMM_SUCCESS)
 
 
 def test_registered_write_and_action(rig):

@@ -16,18 +16,20 @@ from dynamixel_sdk import COMM_SUCCESS, GroupSyncRead, PortHandler, Protocol2Pac
 
 from drivers.boards.frames import FrameReader
 from hil.errors import BackendError, InputError
+from hil.fault_spec import parse_fault
 from hil.robot_files import load_robot
+from hil.servo import COUNTS_PER_RADIAN
 from sim_backends.plant import Plant
 from sim_backends.virtual.remote import RemoteWorld, ServerProcess
 
-pytestmark = pytest.mark.pty
+pytestmark = [pytest.mark.pty, pytest.mark.usefixtures("patient_sdk")]
 
 COMMAND = [sys.executable, "-m", "sim_backends.virtual.server", "minibiped", "--json"]
 
 
 @pytest.fixture
 def server():
-    process = ServerProcess("minibiped", 300, 0)
+    process = ServerProcess("minibiped", 300, 0, ("plant.draws=null",))
     yield process
     process.close()
 
@@ -40,15 +42,19 @@ def world(server):
 
 
 def answered(call, attempts=5):
-    """What a call of the SDK returns once it is answered: a busy machine may miss its 34 ms."""
+    """What a call of the SDK returns once it is answered: a busy machine may miss its time.
+
+    The late answer must not be taken for that to the next request.
+    """
     for _ in range(attempts):
         result = call()
         if (result[-2] if isinstance(result, tuple) else result) == COMM_SUCCESS:
             return result
+        time.sleep(0.5)
     return result
 
 
-def test_the_sdk_s_own_port_talks_to_it(server):
+def test_the_sdk_s_own_port_talks_to_it(server, world):
     port = PortHandler(server.port_urls["left_leg"])
     port.setBaudRate(4_000_000)
     sdk = Protocol2PacketHandler()
@@ -60,7 +66,8 @@ def test_the_sdk_s_own_port_talks_to_it(server):
         for servo_id in range(1, 7):
             reader.addParam(servo_id)
         assert answered(reader.txRxPacket) == COMM_SUCCESS
-        assert reader.getData(4, 132, 4) == pytest.approx(2714, abs=3)
+        knee = 2048 + world.truth().joint_position[3] * COUNTS_PER_RADIAN
+        assert reader.getData(4, 132, 4) == pytest.approx(knee, abs=60)  # Without torque it sinks.
         port.setBaudRate(1_000_000)
         assert sdk.ping(port, 1)[1] != COMM_SUCCESS
     finally:
@@ -113,6 +120,55 @@ def test_bad_requests_are_answered_not_obeyed(server, request_line, message):
         answer = json.loads(client.makefile().readline())
     assert not answer["ok"]
     assert message in answer["error"]
+
+
+def ask(control, **request):
+    """Answer of a control socket."""
+    with socket.socket(socket.AF_UNIX) as client:
+        client.connect(str(control))
+        client.sendall(json.dumps(request).encode() + b"\n")
+        return json.loads(client.makefile().readline())
+
+
+def test_faults_are_injected_live_and_bad_ones_are_told(server):
+    port = PortHandler(server.port_urls["left_leg"])
+    port.setBaudRate(4_000_000)
+    sdk = Protocol2PacketHandler()
+    assert answered(lambda: sdk.ping(port, 4))[1] == COMM_SUCCESS
+    assert ask(server.control, do="inject", fault="servo:left_knee:silent@0+0.5")["ok"]
+    assert sdk.ping(port, 4)[1] != COMM_SUCCESS
+    time.sleep(0.6)
+    assert answered(lambda: sdk.ping(port, 4))[1] == COMM_SUCCESS
+    refused = ask(server.control, do="inject", fault="servo:left_toe:silent")
+    assert "unknown joint" in refused["error"]
+    assert "left_knee" in refused["error"]
+    port.closePort()
+
+
+def test_a_plan_begins_when_the_run_says_that_it_walks(server, world):
+    port = PortHandler(server.port_urls["left_leg"])
+    port.setBaudRate(4_000_000)
+    sdk = Protocol2PacketHandler()
+    world.plan_faults([parse_fault("servo:left_knee:silent@0.2")])
+    time.sleep(0.3)
+    assert answered(lambda: sdk.ping(port, 4))[1] == COMM_SUCCESS
+    world.begin_faults(time.monotonic_ns())
+    time.sleep(0.4)
+    assert sdk.ping(port, 4)[1] != COMM_SUCCESS
+    with pytest.raises(BackendError, match="unknown joint"):
+        world.plan_faults([parse_fault("servo:left_toe:silent")])
+    port.closePort()
+
+
+def test_a_pulled_adapter_ends_in_an_error_of_the_port(server):
+    with serial.Serial(server.port_urls["imu"], 921600, timeout=0.5) as port:
+        assert port.read(100)
+        assert ask(server.control, do="inject", fault="board:imu:disconnect")["ok"]
+        with pytest.raises((serial.SerialException, OSError)):
+            for _ in range(100):
+                port.read(1000)
+                port.write(b"x")
+    assert ask(server.control, do="figures")["ok"]
 
 
 def wait_for_end(process, folder):

@@ -97,9 +97,36 @@ def test_a_new_operating_mode_resets_gains_profile_and_goals(bench):
     assert write(bench, Register.GOAL_POSITION, 100_000) == 0
 
 
-def test_modes_without_position_control_do_not_drive_by_the_goal(bench):
-    write(bench, Register.OPERATING_MODE, 1)
-    assert bench.motors[1].gains == (800, 0, 0)
+def test_an_operating_mode_that_stays_resets_nothing(bench):
+    write(bench, Register.POSITION_P_GAIN, 500)
+    assert write(bench, Register.OPERATING_MODE, 3) == 0
+    assert bench.servos[1].registers[Register.POSITION_P_GAIN] == 500
+
+
+def test_mode_limits_and_goals_of_every_loop_reach_the_motor(bench):
+    write(bench, Register.OPERATING_MODE, 5)
+    write(bench, Register.CURRENT_LIMIT, 900)
+    write(bench, Register.PWM_LIMIT, 700)
+    write(bench, Register.GOAL_CURRENT, -300)
+    write(bench, Register.GOAL_VELOCITY, 55)
+    write(bench, Register.POSITION_I_GAIN, 7)
+    write(bench, Register.FEEDFORWARD_1ST_GAIN, 8)
+    write(bench, Register.VELOCITY_P_GAIN, 90)
+    write(bench, Register.PROFILE_VELOCITY, 40)
+    told = bench.motors[1].told
+    assert (told["mode"], told["limits"]) == ((5,), (700, 900))
+    assert (told["goal_current"], told["goal_velocity"]) == ((-300,), (55,))
+    assert (told["gains"], told["velocity_gains"]) == ((800, 7, 0, 8, 0), (90, 1920))
+    assert told["profile"] == (40, 0, False)
+
+
+def test_reverse_mode_turns_every_goal(bench):
+    write(bench, Register.DRIVE_MODE, 1)
+    write(bench, Register.OPERATING_MODE, 0)
+    write(bench, Register.GOAL_CURRENT, 300)
+    write(bench, Register.GOAL_PWM, 200)
+    told = bench.motors[1].told
+    assert (told["goal_current"], told["goal_pwm"]) == ((-300,), (-200,))
 
 
 def test_torque_and_goals_reach_the_motor(bench):
@@ -108,7 +135,8 @@ def test_torque_and_goals_reach_the_motor(bench):
     write(bench, Register.GOAL_POSITION, 1000)
     write(bench, Register.TORQUE_ENABLE, 1)
     motor = bench.motors[1]
-    assert (motor.on, motor.goal, motor.gains) == (True, 1000, (640, 0, 500))
+    assert (motor.on, motor.goal) == (True, 1000)
+    assert (motor.told["gains"], motor.told["goal_pwm"]) == ((640, 0, 0, 0, 0), (500,))
 
 
 def test_torque_on_by_goal_update_is_as_treacherous_as_the_real_one(bench):
@@ -243,7 +271,7 @@ def test_indirect_data_follows_its_addresses_both_ways(bench):
     table = gain.to_bytes(2, "little") + (gain + 1).to_bytes(2, "little")
     bench.ask(protocol.encode_write(1, 168, table))
     assert answers(bench.ask(protocol.encode_write(1, 224, b"\xf4\x01")))[0][1] == 0
-    assert bench.motors[1].gains[0] == 500
+    assert bench.motors[1].told["gains"][0] == 500
 
 
 @pytest.mark.parametrize("model", SERVO_MODELS)

@@ -63,6 +63,18 @@ def test_whole_model_predicts_the_next_step_exactly(edge_loaded, response):
     assert forces == pytest.approx(edge_loaded.forces, rel=1e-4, abs=0.01)
 
 
+def test_what_was_asked_before_does_not_change_the_answer(edge_loaded, response):
+    """The solver starts from the last sample's solution, and only saves iterations by it."""
+    fresh = response.place(edge_loaded.torques, edge_loaded.stance)
+    sample = response.forces((5.0, -3.0, 10.0))
+    for other in ((80.0, -60.0, 200.0), (-80.0, 60.0, -200.0)):
+        response.forces(other)
+    assert response.forces((5.0, -3.0, 10.0)) == pytest.approx(sample, abs=1e-3)
+    response.place(np.zeros_like(edge_loaded.torques), 1 - edge_loaded.stance)
+    again = response.place(edge_loaded.torques, edge_loaded.stance)
+    assert again == pytest.approx(fresh, abs=1e-3)
+
+
 def test_comparison_ranks_the_models(edge_loaded):
     comparison = ModelComparison(edge_loaded.description, 300)
     comparison.add(edge_loaded.estimate, edge_loaded.torques, edge_loaded.stance, False)

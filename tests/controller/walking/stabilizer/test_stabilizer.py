@@ -9,6 +9,7 @@ from controller.robot_model import RobotModel
 from controller.walking.ankle_guards import AnkleGuards
 from controller.walking.stabilizer.config import StabilizerConfig
 from controller.walking.stabilizer.distribution import distribution
+from controller.walking.stabilizer.sample_box import NO_TORQUE
 from controller.walking.stabilizer.stabilizer import Stabilizer
 from controller.walking.torque_walker import TorqueWalker
 from hil.compose import build
@@ -66,33 +67,35 @@ def make(edge_loaded, **config):
 
 def test_torques_go_to_the_stance_leg_alone(edge_loaded):
     torques = edge_loaded.torques.copy()
-    measured = np.array(edge_loaded.forces)
+    measured = list(edge_loaded.forces)
     stabilizer = make(edge_loaded)
     extra = stabilizer.add_torques(torques, edge_loaded.stance, True, measured, False)
     changed = np.flatnonzero(torques != edge_loaded.torques)
     side = ("left", "right")[edge_loaded.stance]
     names = [edge_loaded.description.joint_names[j] for j in changed]
     assert set(names) <= {f"{side}_{j}" for j in ("ankle_pitch", "ankle_roll", "knee")}
-    assert np.any(extra != 0.0)
+    assert extra != NO_TORQUE
 
 
 def test_a_well_loaded_foot_is_left_alone(edge_loaded):
     torques = edge_loaded.torques.copy()
     stabilizer = make(edge_loaded)
-    even = np.array([150.0, 150.0, 150.0, 150.0, 20.0])
+    even = [150.0, 150.0, 150.0, 150.0, 20.0]
     extra = stabilizer.add_torques(torques, edge_loaded.stance, True, even, False)
-    assert not extra.any() and np.array_equal(torques, edge_loaded.torques)
+    assert extra == NO_TORQUE and np.array_equal(torques, edge_loaded.torques)
     assert stabilizer.solution.iterations == 0
 
 
 def test_load_cells_outweigh_the_model(edge_loaded):
     """Cells that keep showing a good foot stop the search that the model alone would begin."""
     stabilizer = make(edge_loaded, calm=0.55)
-    even = np.array([150.0, 150.0, 150.0, 150.0, 20.0])
+    even = [150.0, 150.0, 150.0, 150.0, 20.0]
     found = []
     for _ in range(40):
         torques = edge_loaded.torques.copy()
-        found.append(stabilizer.add_torques(torques, edge_loaded.stance, True, even, False).any())
+        found.append(
+            stabilizer.add_torques(torques, edge_loaded.stance, True, even, False) != NO_TORQUE
+        )
     assert found[0] and not found[-1]
 
 

@@ -1,0 +1,1 @@
+"""Procedures on registers: search, set up, inspect, move one servo, switch torque off."""

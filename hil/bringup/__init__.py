@@ -1,0 +1,1 @@
+"""Bring-up: what a builder does before the first walk, from one servo to a checked robot."""

@@ -1,0 +1,1 @@
+"""What protects robot and fingers: monitors find events, one pure function decides."""

@@ -1,0 +1,32 @@
+"""The safety chain of a robot: which monitors it has and how it comes to rest."""
+
+from hil.description import RobotDescription
+from hil.safety.decision import WayOut
+from hil.safety.feet import FeetMonitor
+from hil.safety.monitor import Monitor
+from hil.safety.program import ClampMonitor, PauseMonitor
+from hil.safety.servos import ErrorMonitor, FrozenMonitor, TemperatureMonitor, VoltageMonitor
+from hil.safety.silence import BoardMonitor, SilenceMonitor
+from hil.safety.supervisor import Supervisor
+from hil.safety.way_out import LAND_S, sit_time_s
+
+
+def make_supervisor(
+    description: RobotDescription, rate_hz: int, weight_n: float, *, paced: bool
+) -> Supervisor:
+    """The supervisor of a run. `paced`: ticks are those of the wall clock, and can be late."""
+    sit_ns = round(sit_time_s(description) * 1e9)
+    way_out = WayOut(sit_ns, round(LAND_S * 1e9) if sit_ns else 0)
+    monitors: list[Monitor] = [SilenceMonitor(description), BoardMonitor(description)]
+    if description.actuation == "servo":
+        monitors += [
+            ErrorMonitor(description),
+            FrozenMonitor(description),
+            TemperatureMonitor(description),
+            VoltageMonitor(description),
+            FeetMonitor(description, rate_hz, weight_n),
+            ClampMonitor(),
+        ]
+    if paced:
+        monitors.append(PauseMonitor())
+    return Supervisor(monitors, way_out)

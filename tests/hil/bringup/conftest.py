@@ -1,0 +1,98 @@
+"""Virtual robots behind their ports, on the virtual clock, for commands run in this process."""
+
+import shutil
+
+import pytest
+import yaml
+from typer.testing import CliRunner
+
+from hil.cli.main import app
+from hil.robot_files import find_robot_file, load_robot
+from sim_backends.plant import Plant
+from sim_backends.virtual.motors import nominal_motors
+from sim_backends.virtual.robot import VirtualRobot
+
+RATE = 300
+CLOCKED = ("check", "jog", "monitor", "relax", "scan", "setup")
+
+
+class Workbench:
+    """A virtual robot at rest, and the command line that knows its ports."""
+
+    def __init__(self, robot):
+        self.robot = robot
+        self.description = robot.description
+
+    def url(self, name):
+        return self.robot.port_urls[name]
+
+    def ports(self, **instead):
+        """`--port` options; a name may be given another one's port, or None for no port."""
+        names = {name: name for name in self.robot.port_urls} | instead
+        return [
+            word
+            for name, other in names.items()
+            if other is not None
+            for word in ("--port", f"{name}={self.url(other)}")
+        ]
+
+    def stride(self, *arguments, stdin=""):
+        return CliRunner().invoke(app, list(map(str, arguments)), input=stdin)
+
+    def silence_all_but(self, *joints):
+        for joint in self.robot.servos:
+            if joint not in joints:
+                self.robot.inject(f"servo:{joint}:silent")
+
+    def registers(self, joint):
+        return self.robot.servos[joint].registers
+
+    def servo(self, joint):
+        return self.robot.servos[joint]
+
+
+@pytest.fixture
+def make_bench(monkeypatch):
+    benches = []
+
+    def make(*overrides, file="minibiped"):
+        description = load_robot(file, ("plant.draws=null", "plant.substeps=2", *overrides))
+        plant = Plant(description, RATE, 0, nominal_motors(description))
+        robot = VirtualRobot(description, plant, 0, RATE)
+        robot.start()
+        for module in CLOCKED:
+            monkeypatch.setattr(f"hil.bringup.{module}.MonotonicClock", lambda: robot.clock)
+        benches.append(robot)
+        return Workbench(robot)
+
+    yield make
+    for robot in benches:
+        robot.close()
+
+
+@pytest.fixture
+def calibrated(make_bench, tmp_path):
+    """A robot whose file names a calibration, true but for what a test changes."""
+
+    def make(**changes):
+        folder = tmp_path / "robot"
+        shutil.copytree(find_robot_file("minibiped").parent, folder)
+        file = folder / "minibiped.yaml"
+        file.write_text(file.read_text(encoding="utf-8") + "\ncalibration: mine.yaml\n")
+        bench = make_bench(file=str(file))
+        content = {
+            "robot": "minibiped",
+            "provenance": {"date": "2026-01-02", "method": "ideal"},
+            **bench.robot.calibration_data,
+            **changes,
+        }
+        (folder / "mine.yaml").write_text(yaml.safe_dump(content), encoding="utf-8")
+        bench.file = str(file)
+        return bench
+
+    return make
+
+
+@pytest.fixture
+def bench(make_bench):
+    return make_bench()
