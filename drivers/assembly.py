@@ -85,21 +85,28 @@ def port_url(port_urls: Mapping[str, str], name: str) -> str:
     return port_urls[name]
 
 
+def expected_servos(description: RobotDescription, bus: str) -> tuple[ExpectedServo, ...]:
+    """Servos that the robot file has on a bus."""
+    return tuple(
+        ExpectedServo(
+            joint.name,
+            joint.id or 0,
+            find_servo_model(joint.servo or ""),
+            OperatingMode(JOINT_MODES[joint.mode]),
+            description.safety.overload_ends_torque,
+        )
+        for joint in description.joints
+        if joint.bus == bus
+    )
+
+
 def open_bus(description: RobotDescription, clock: Clock, name: str, url: str) -> BusParts:
     """Open a bus's port. Raises PortError."""
     timing = bus_timing(description, name)
     members = [
         (index, joint) for index, joint in enumerate(description.joints) if joint.bus == name
     ]
-    servos = tuple(
-        ExpectedServo(
-            joint.name,
-            joint.id or 0,
-            find_servo_model(joint.servo or ""),
-            OperatingMode(JOINT_MODES[joint.mode]),
-        )
-        for _, joint in members
-    )
+    servos = expected_servos(description, name)
     port = Port(name, url, timing.baud)
     group = GroupAccess(port, timing, clock)
     return BusParts(

@@ -120,6 +120,11 @@ class Safety(Config):
 
     temperature_limit: PositiveFloat = 80.0
     """At which the servos shut themselves down [°C] (Temperature Limit, X-series e-manual)."""
+    overload_ends_torque: bool = True
+    """Whether a servo may switch itself off for what its firmware calls an overload; if not, the
+    supervisor alone judges the load (`torque_share_max`)."""
+    torque_share_max: PositiveFloat = 0.6
+    """Rms torque over some seconds, as a share of the joint's limit, that stops the robot."""
     voltage_min: PositiveFloat | None = None
     """Least supply at the servos [V]; none is not watched."""
     voltage_patience: PositiveFloat = 0.1

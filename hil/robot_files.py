@@ -7,7 +7,7 @@ from typing import Any
 
 import yaml
 
-from hil.description import RobotDescription, Timing
+from hil.description import RobotDescription, Safety, Timing
 from hil.errors import InputError, UnknownNameError
 from hil.twin import Noise, Plant, Supply
 from hil.validation import Config, read_yaml, validate
@@ -55,6 +55,7 @@ FIXED_SECTIONS: dict[str, type[Config]] = {
     "supply": Supply,
     "timing": Timing,
     "plant": Plant,
+    "safety": Safety,
     "noise": Noise,
 }
 """Sections whose keys can be set although the file may leave them out."""

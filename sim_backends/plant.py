@@ -23,6 +23,7 @@ from sim_backends.model import (
 from sim_backends.plant_servos import encoder_phase, make_servos
 from sim_backends.servo_figures import SERVO_KEYS
 from sim_backends.servo_physics import ServoPhysics
+from sim_backends.servo_protection import OVERLOAD
 from sim_backends.thrown_ball import ThrownBall
 from sim_backends.uneven_floor import UnevenFloor
 
@@ -97,6 +98,8 @@ class Plant:
                 self.model, self.data, self._rotor_dofs,
             )  # fmt: skip
             self.servos.delay_goals(self.substeps * description.plant.latency_ticks)
+            if not description.safety.overload_ends_torque:
+                self.servos.protection.shutdown &= ~OVERLOAD
             self.drive()
 
     def drive(self) -> None:

@@ -2,16 +2,13 @@
 
 from collections.abc import Iterable, Mapping
 
-from drivers.assembly import port_url
+from drivers.assembly import expected_servos, port_url
 from drivers.commissioning.line import ServoLine
 from drivers.dynamixel.audit import ExpectedServo
-from drivers.dynamixel.control_table import OperatingMode
 from drivers.dynamixel.port import Port
-from drivers.dynamixel.servo_models import find_servo_model
 from hil.description import RobotDescription
 from hil.errors import InputError, PortError, UnknownNameError
 from hil.interface import Clock
-from hil.servo import JOINT_MODES
 
 
 class RobotBench:
@@ -59,16 +56,7 @@ class RobotBench:
 
     def expected(self, bus: str) -> list[ExpectedServo]:
         """Servos that the robot file has on a bus."""
-        return [
-            ExpectedServo(
-                joint.name,
-                joint.id or 0,
-                find_servo_model(joint.servo or ""),
-                OperatingMode(JOINT_MODES[joint.mode]),
-            )
-            for joint in self.description.joints
-            if joint.bus == bus
-        ]
+        return list(expected_servos(self.description, bus))
 
     def find(self, joint: str) -> tuple[str, ExpectedServo]:
         """Bus and servo of a joint. Raises UnknownNameError."""

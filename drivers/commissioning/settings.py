@@ -18,9 +18,6 @@ from hil.servo import COUNTS_PER_TURN, PWM_FULL
 
 FIRST, LAST = Register.MODEL_NUMBER, Register.PRESENT_TEMPERATURE
 """Ends of the block that holds every register which matters."""
-SHUTDOWN = HardwareError.OVERHEATING | HardwareError.ELECTRICAL_SHOCK | HardwareError.OVERLOAD
-"""What ends torque in the servo itself. Not the input voltage: the sag of one hard step would
-leave a joint limp until it is restarted; the supervisor watches the voltage and ends the walk."""
 NO_SHADOW = 255
 
 
@@ -83,7 +80,7 @@ def wanted_settings(servo: ExpectedServo, image: RegisterImage) -> Iterator[Sett
         ),
         Setting(Register.STARTUP_CONFIGURATION, 0, "power alone never means torque"),
         Setting(Register.PWM_SLOPE, PWM_SLOPE, "no lag of the duty"),
-        Setting(Register.SHUTDOWN, int(SHUTDOWN), "hot, shocked, overloaded"),
+        Setting(Register.SHUTDOWN, int(servo.shutdown), "what ends the torque"),
     )
     firmware = image[Register.FIRMWARE_VERSION]
     for row in rows:

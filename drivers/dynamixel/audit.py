@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from drivers.dynamixel.client import ServoClient
 from drivers.dynamixel.control_table import (
     DriveMode,
+    HardwareError,
     OperatingMode,
     Register,
     StatusReturnLevel,
@@ -20,6 +21,9 @@ from hil.servo import COUNTS_PER_TURN
 
 FORBIDDEN_DRIVE_MODE = DriveMode.REVERSE | DriveMode.TORQUE_ON_BY_GOAL_UPDATE
 """Directions are the robot file's, and a goal must not switch torque on."""
+SHUTDOWN = HardwareError.OVERHEATING | HardwareError.ELECTRICAL_SHOCK | HardwareError.OVERLOAD
+"""Errors that end the torque in the servo itself. Not the input voltage: the sag of one hard step
+would leave a joint limp until it is restarted; the supervisor watches the voltage."""
 PWM_SLOPE = 255
 """The fastest; the factory's 140 of a 5 V servo takes 18 ms from no duty to all of it."""
 
@@ -32,6 +36,13 @@ class ExpectedServo:
     id: int
     model: ServoModel
     mode: OperatingMode = OperatingMode.POSITION
+    overload_ends_torque: bool = True
+    """Whether the servo may switch itself off for what its firmware calls an overload."""
+
+    @property
+    def shutdown(self) -> HardwareError:
+        """Errors that end the torque: the Shutdown mask."""
+        return SHUTDOWN if self.overload_ends_torque else SHUTDOWN & ~HardwareError.OVERLOAD
 
 
 @dataclass(slots=True)
@@ -103,6 +114,8 @@ def _wanted(register: Register, value: int, servo: ExpectedServo) -> int:
     """What a setting should be, given what it is."""
     if register is Register.PWM_SLOPE:
         return PWM_SLOPE
+    if register is Register.SHUTDOWN:
+        return int(servo.shutdown)
     if register is Register.DRIVE_MODE:
         return value & ~int(FORBIDDEN_DRIVE_MODE)
     return int(servo.mode) if register is Register.OPERATING_MODE else 0
@@ -122,6 +135,7 @@ def _correct(
         Register.DRIVE_MODE,
         Register.OPERATING_MODE,
         Register.PWM_SLOPE,
+        Register.SHUTDOWN,
     ):
         concerned = [servo for servo in servos if register in servo.model.registers]
         values = group.read(register, [servo.id for servo in concerned])

@@ -5,7 +5,13 @@ from hil.safety.decision import WayOut
 from hil.safety.feet import FeetMonitor
 from hil.safety.monitor import Monitor
 from hil.safety.program import ClampMonitor, PauseMonitor
-from hil.safety.servos import ErrorMonitor, FrozenMonitor, TemperatureMonitor, VoltageMonitor
+from hil.safety.servos import (
+    ErrorMonitor,
+    FrozenMonitor,
+    LoadMonitor,
+    TemperatureMonitor,
+    VoltageMonitor,
+)
 from hil.safety.silence import BoardMonitor, SilenceMonitor
 from hil.safety.supervisor import Supervisor
 from hil.safety.way_out import LAND_S, sit_time_s
@@ -22,6 +28,7 @@ def make_supervisor(
         monitors += [
             ErrorMonitor(description),
             FrozenMonitor(description),
+            LoadMonitor(description, rate_hz),
             TemperatureMonitor(description),
             VoltageMonitor(description),
             FeetMonitor(description, rate_hz, weight_n),

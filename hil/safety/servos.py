@@ -9,13 +9,16 @@ from hil.safety.severity import Event, Severity
 
 WARN_BELOW_K, STOP_BELOW_K = 10.0, 5.0
 """Distances to the servo's own shutdown temperature at which to warn and to stop [K]."""
-_OWN_BITS, _VOLTAGE_BIT = 0x7F, 0x01
+_OWN_BITS, _VOLTAGE_BIT, _OVERLOAD = 0x7F, 0x01, 0x20
 _DISOBEDIENT = (
     (JointError.REBOOTED, "rebooted"),
     (JointError.TORQUE_LOST, "torque lost"),
     (JointError.STOPPED, "stopped by its watchdog"),
 )
 """Worst first."""
+LOAD_TIME_S = 5.0
+"""Time over which the torque is averaged: shorter than a winding needs to get hot (assumed)."""
+WARN_SHARE = 0.85
 LOOK_EVERY_NS = 20_000_000
 """Temperature and voltage are looked at this often."""
 
@@ -86,9 +89,11 @@ class ErrorMonitor:
 
     def __init__(self, description: RobotDescription) -> None:
         self._names = description.joint_names
+        told = _VOLTAGE_BIT if description.safety.overload_ends_torque else _VOLTAGE_BIT | _OVERLOAD
+        self._only_told = told
 
     def look(self, situation: Situation) -> list[Event]:
-        """SOFT_STOP for the rest of the robot; a low voltage alone is only told (WARN)."""
+        """SOFT_STOP for the rest of the robot; what does not end a torque is only told (WARN)."""
         errors = situation.frame.joint_error
         if not np.count_nonzero(errors):
             return []
@@ -101,9 +106,8 @@ class ErrorMonitor:
         own = error & _OWN_BITS
         if own == 0:  # an alert whose cause is read in the next ticks
             return Event(self._names[joint], "servo alert", Severity.WARN)
-        if own == _VOLTAGE_BIT:
-            return Event(self._names[joint], "servo input voltage", Severity.WARN)
-        return Event(self._names[joint], f"servo error 0x{own:02x}", Severity.SOFT_STOP)
+        severity = Severity.SOFT_STOP if own & ~self._only_told else Severity.WARN
+        return Event(self._names[joint], f"servo error 0x{own:02x}", severity)
 
 
 class FrozenMonitor:
@@ -144,3 +148,33 @@ class FrozenMonitor:
         np.maximum(self._high, goal, out=self._high)
         self._still &= position == self._position
         return self._found
+
+
+class LoadMonitor:
+    """Rms torque of every joint over LOAD_TIME_S, as a share of its limit.
+
+        m ← m + (τ² − m)·h/T,    √m > share·τ_max
+
+    Winding heat goes with the square of the torque. A joint that stalls reaches 0.6 after 2.2 s.
+    """
+
+    def __init__(self, description: RobotDescription, rate_hz: int) -> None:
+        limits = np.array([joint.torque_limit for joint in description.joints])
+        self._names = description.joint_names
+        self._stop = np.square(limits * description.safety.torque_share_max)
+        self._mean = np.zeros(limits.size)
+        self._share = 1.0 / (LOAD_TIME_S * rate_hz)
+
+    def look(self, situation: Situation) -> list[Event]:
+        """SOFT_STOP for joints that work too hard; WARN at WARN_SHARE of that torque."""
+        self._mean += (np.square(situation.frame.joint_torque) - self._mean) * self._share
+        if (self._mean < WARN_SHARE**2 * self._stop).all():
+            return []
+        return [
+            Event(
+                self._names[j],
+                "overloaded" if self._mean[j] > self._stop[j] else "works hard",
+                Severity.SOFT_STOP if self._mean[j] > self._stop[j] else Severity.WARN,
+            )
+            for j in np.flatnonzero(self._mean >= WARN_SHARE**2 * self._stop).tolist()
+        ]

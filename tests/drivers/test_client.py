@@ -92,7 +92,7 @@ def test_an_audit_corrects_settings_and_says_so(client, group, fake_port):
     result = audit_bus("left_leg", client, group, expected())
     assert not result.problems
     assert result.fast_reads
-    assert len(result.changes) == 6 + 2
+    assert len(result.changes) == 6 + 6 + 2  # return delay, shutdown, and the two above
     assert "bus left_leg id 2 (joint_2): Operating Mode 4 -> 3" in result.changes
     assert fake_port.servos[4][Register.DRIVE_MODE] == DriveMode.TIME_BASED_PROFILE
     assert not audit_bus("left_leg", client, group, expected()).changes

@@ -283,7 +283,8 @@ def test_the_bus_leaves_time_for_the_controller(rig):
         ("reboot@0", 60, 0),
         ("lost_torque@0", 0, JointError.TORQUE_LOST),
         ("watchdog_trip@0", 0, JointError.STOPPED),
-        ("alert=overload@0", 0, JointError.TORQUE_LOST | 32),
+        ("alert=overload@0", 0, 32),  # told: this robot masks it
+        ("alert=electrical_shock@0", 0, JointError.TORQUE_LOST | 16),
     ],
 )
 def test_what_a_servos_fault_costs(rig, fault, own, found):

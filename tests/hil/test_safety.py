@@ -180,10 +180,26 @@ def test_a_sag_shorter_than_a_tenth_of_a_second_is_told_and_a_longer_one_stops()
 
 
 def test_a_servo_that_reports_an_error_stops_the_robot():
-    watched = Watched()
+    watched = Watched(load_robot("minibiped", ("safety.overload_ends_torque=true",)))
     watched.frame.joint_error[3] = 0x20
     assert watched.tick() is Action.SIT
     assert watched.told == [("left_knee", "servo error 0x20", "soft_stop")]
+
+
+def test_an_overload_that_does_not_end_the_torque_is_told():
+    watched = Watched()
+    watched.frame.joint_error[3] = 0x20
+    assert watched.tick(3) is Action.RUN
+    assert watched.told == [("left_knee", "servo error 0x20", "none")]
+
+
+def test_a_joint_that_stalls_stops_the_robot_in_seconds_and_a_peak_does_not():
+    watched = Watched()
+    watched.frame.joint_torque[3] = -4.1
+    assert watched.tick(300) is Action.RUN  # one second
+    assert watched.tick(450) is Action.SIT
+    assert ("left_knee", "works hard", "none") in watched.told
+    assert ("left_knee", "overloaded", "soft_stop") in watched.told
 
 
 @pytest.mark.parametrize(
@@ -201,7 +217,7 @@ def test_a_servo_that_only_complains_of_its_voltage_is_told():
     watched = Watched()
     watched.frame.joint_error[3] = 0x01
     assert watched.tick(3) is Action.RUN
-    assert watched.told == [("left_knee", "servo input voltage", "none")]
+    assert watched.told == [("left_knee", "servo error 0x01", "none")]
 
 
 def test_a_servo_that_stays_while_its_goal_moves_is_frozen_and_one_at_rest_is_not():

@@ -6,6 +6,8 @@ import pytest
 import yaml
 from typer.testing import CliRunner
 
+from drivers.assembly import expected_servos
+from drivers.dynamixel.control_table import Register
 from hil.cli.main import app
 from hil.robot_files import find_robot_file, load_robot
 from sim_backends.plant import Plant
@@ -60,6 +62,9 @@ def make_bench(monkeypatch):
         plant = Plant(description, RATE, 0, nominal_motors(description))
         robot = VirtualRobot(description, plant, 0, RATE)
         robot.start()
+        for bus in description.buses:
+            for servo in expected_servos(description, bus):
+                robot.servos[servo.joint].registers[Register.SHUTDOWN] = int(servo.shutdown)
         for module in CLOCKED:
             monkeypatch.setattr(f"hil.bringup.{module}.MonotonicClock", lambda: robot.clock)
         benches.append(robot)

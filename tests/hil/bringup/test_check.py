@@ -95,7 +95,7 @@ WRONG_REGISTERS = {
     "left_hip_roll": (Register.DRIVE_MODE, 1, "Drive Mode is 1, must be 0"),
     "left_hip_pitch": (Register.OPERATING_MODE, 4, "Operating Mode is 4, must be 3"),
     "left_knee": (Register.HOMING_OFFSET, 100, "Homing Offset is 100, must be 0"),
-    "right_hip_yaw": (Register.SHUTDOWN, 0, "Shutdown is 0, must be 52"),
+    "right_hip_yaw": (Register.SHUTDOWN, 0, "Shutdown is 0, must be 20"),
     "right_hip_roll": (Register.MAX_POSITION_LIMIT, 4000, "Max Position Limit is 4000, must be"),
     "right_hip_pitch": (Register.STARTUP_CONFIGURATION, 1, "Startup Configuration is 1, must be"),
     "right_knee": (Register.TORQUE_ENABLE, 1, "torque is on"),

@@ -34,7 +34,7 @@ def test_what_is_wrong_is_written_and_read_back(bench):
     assert registers[Register.RETURN_DELAY_TIME] == 0
     assert registers[Register.HOMING_OFFSET] == 0
     assert registers[Register.MIN_POSITION_LIMIT] == 0
-    assert registers[Register.SHUTDOWN] == 52
+    assert registers[Register.SHUTDOWN] == 20
     again = bench.stride("setup", "minibiped", *bench.ports(), "--yes")
     assert "What will change" not in again.stdout
 
