@@ -26,6 +26,7 @@ class FeetMonitor:
 
     def __init__(self, description: RobotDescription, rate_hz: int, weight_n: float) -> None:
         self._boards = tuple(description.feet[side].board for side in ("left", "right"))
+        self._complete = None not in self._boards
         self._share = 1.0 / (MEAN_TIME_S * rate_hz)
         self._weight = weight_n
         self._mean = weight_n
@@ -34,11 +35,12 @@ class FeetMonitor:
     def look(self, situation: Situation) -> list[Event]:
         """Feet without enough cells, loads that cannot be."""
         frame, events = situation.frame, []
-        cells = np.count_nonzero(frame.foot_valid, axis=1).tolist()
-        for board, valid in zip(self._boards, cells, strict=True):
-            if board is not None and 0 < valid < LEAST_CELLS:
-                events.append(Event(board, "too few valid cells", Severity.SOFT_STOP))
-        if not situation.walking or None in self._boards:
+        if np.count_nonzero(frame.foot_valid) < frame.foot_valid.size:
+            cells = np.count_nonzero(frame.foot_valid, axis=1).tolist()
+            for board, valid in zip(self._boards, cells, strict=True):
+                if board is not None and 0 < valid < LEAST_CELLS:
+                    events.append(Event(board, "too few valid cells", Severity.SOFT_STOP))
+        if not (situation.walking and self._complete):
             return events
         self._mean += (float(frame.foot_force.sum()) - self._mean) * self._share
         self._patience -= 1

@@ -18,6 +18,8 @@ _DISOBEDIENT = (
 """Worst first."""
 LOAD_TIME_S = 5.0
 """Time over which the torque is averaged: shorter than a winding needs to get hot (assumed)."""
+LOAD_EVERY = 5
+"""Ticks between two looks at the torques."""
 WARN_SHARE = 0.85
 LOOK_EVERY_NS = 20_000_000
 """Temperature and voltage are looked at this often."""
@@ -163,10 +165,14 @@ class LoadMonitor:
         self._names = description.joint_names
         self._stop = np.square(limits * description.safety.torque_share_max)
         self._mean = np.zeros(limits.size)
-        self._share = 1.0 / (LOAD_TIME_S * rate_hz)
+        self._share = LOAD_EVERY / (LOAD_TIME_S * rate_hz)
+        self._tick = 0
 
     def look(self, situation: Situation) -> list[Event]:
         """SOFT_STOP for joints that work too hard; WARN at WARN_SHARE of that torque."""
+        self._tick += 1
+        if self._tick % LOAD_EVERY:
+            return []
         self._mean += (np.square(situation.frame.joint_torque) - self._mean) * self._share
         if (self._mean < WARN_SHARE**2 * self._stop).all():
             return []

@@ -29,13 +29,13 @@ class SilenceMonitor:
         self._answered: Bools = np.ones((LINK_TICKS, n), dtype=np.bool_)
         self._lost: Ints = np.zeros(n, dtype=np.int64)
         self._row = 0
+        self._clean = True
+        """Nothing was lost in the window: it is all the same where in it the next tick stands."""
 
     def look(self, situation: Situation) -> list[Event]:
         """Joints that are silent, or whose link is poor."""
         valid, row = situation.frame.joint_valid, self._answered[self._row]
-        if valid.all() and row.all() and not self._lost.any():
-            self._missed[:] = 0
-            self._row = (self._row + 1) % LINK_TICKS
+        if self._clean and np.count_nonzero(valid) == valid.size:
             return []
         self._lost += row
         self._lost -= valid
@@ -43,6 +43,7 @@ class SilenceMonitor:
         self._row = (self._row + 1) % LINK_TICKS
         self._missed += 1
         self._missed[valid] = 0
+        self._clean = not self._lost.any()
         return self._events()
 
     def _events(self) -> list[Event]:
