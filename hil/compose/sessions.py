@@ -1,6 +1,6 @@
-"""The composition root: the one module that puts controller, drivers and simulation together."""
+"""Controller, drivers and simulation of one run, put together as its request says."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from contextlib import ExitStack
 from datetime import UTC, datetime
 from pathlib import Path
@@ -9,23 +9,14 @@ from typing import Any
 from controller.estimation.sensors import SensorEstimator
 from controller.estimation.truth import TruthEstimator
 from controller.walking.servo_walker import ServoWalker
-from controller.walking.stabilizer.model_comparison import ModelComparison
 from controller.walking.torque_walker import TorqueWalker
-from drivers.assembly import bus_budgets
-from drivers.bus_bench import BusMeasurement, measure_port, measure_robot
 from drivers.calibration import RobotCalibration, load_calibration
-from drivers.commissioning import workshop as commissioning
-from drivers.dynamixel.gain_facts import feasible_gains, servo_facts
 from drivers.dynamixel.gain_mapping import GainMapping
-from drivers.dynamixel.hot_path_bench import measure_hot_path
-from drivers.identified_servo import keep_identified, require_identifiable
 from drivers.motor_constants import motor_parameters
 from drivers.robot_backend import BusBackend
 from hil.clock import MonotonicClock
 from hil.description import RobotDescription
 from hil.errors import DescriptionError, InputError
-from hil.fault_spec import FaultSpec
-from hil.identify import Rig, joint_index
 from hil.interface import Controller, Estimator, World
 from hil.request import DEFAULT_SOLVER, RunRequest
 from hil.robot_files import load_robot
@@ -33,32 +24,10 @@ from hil.servo import MotorParameters
 from hil.session import Session
 from hil.validation import validate
 from sim_backends.draws import hidden_values
-from sim_backends.hidden_servo import hidden_servo, joint_inertia
 from sim_backends.mujoco_backend import MujocoBackend
 from sim_backends.plant import Plant
 from sim_backends.virtual.remote import RemoteWorld, ServerProcess
 from sim_backends.virtual.robot import VirtualRobot
-from sim_backends.virtual.server import run_server, stdin_is_pipe
-
-__all__ = [
-    "BusMeasurement",
-    "build",
-    "build_robot",
-    "bus_budgets",
-    "commissioning",
-    "feasible_gains",
-    "hoist",
-    "measure_hot_path",
-    "measure_port",
-    "measure_robot",
-    "model_comparison",
-    "serve_virtual",
-    "servo_facts",
-    "servo_rig",
-]
-
-HOIST = 0.3
-"""How high a virtual robot is lifted to be moved without touching the floor [m]."""
 
 
 def build(request: RunRequest) -> Session:
@@ -81,69 +50,10 @@ def build_robot(request: RunRequest, description: RobotDescription) -> Session:
     return _in_lockstep(resolved, description)
 
 
-def hoist(session: Session, joint: str) -> float:
-    """Lift a simulated robot off its feet; the inertia at a joint, rotor included [kg·m²]."""
-    if not isinstance(session.world, Plant):
-        raise InputError("only a simulated robot in lockstep can be hoisted")
-    session.world.hoist(HOIST)
-    return joint_inertia(session.world, session.description.joint_names.index(joint))
-
-
-def servo_rig(request: RunRequest, joint: str) -> Rig:
-    """A robot in the air whose joint is to be identified; a virtual one is hoisted.
-
-    Raises InputError for what does not fit together, or a servo that measures no motor current.
-    """
-    description = load_robot(request.robot, request.overrides)
-    index = joint_index(description.joint_names, joint)
-    require_identifiable(description.joints[index])
-    session = build_robot(request, description)
-    backend = session.backend
-    if not isinstance(backend, BusBackend):
-        raise InputError("identify moves servos through the driver: use --backend bus")
-    hidden = {}
-    if isinstance(session.world, Plant):
-        session.world.hoist(HOIST)
-        hidden = hidden_servo(session.world, index)
-    calibration = backend.calibration
-    return Rig(
-        session,
-        lambda: backend.goals,
-        motor_parameters(description, calibration),
-        calibration.offsets(description.joint_names),
-        lambda path, found: keep_identified(
-            description, calibration, path, joint, found.fit.as_dict(), found.method
-        ),
-        hidden,
-    )
-
-
-def model_comparison(request: RunRequest) -> ModelComparison:
-    """The stabilizer's reduced models of a resolved request's robot, side by side."""
-    description = load_robot(request.robot, request.overrides)
-    return ModelComparison(description, _rate(request))
-
-
-def serve_virtual(
-    robot: str,
-    rate_hz: int | None,
-    seed: int,
-    overrides: tuple[str, ...],
-    as_json: bool,
-    faults: Sequence[FaultSpec] = (),
-) -> None:
-    """Serve a virtual robot on pseudo-terminals in this process until it is told to stop."""
-    description = load_robot(robot, overrides)
-    if not description.buses:
-        raise InputError(f"{description.name} has no servo bus to emulate")
-    rate_hz = rate_hz or description.defaults.rate_hz
-    run_server(description, rate_hz, seed, as_json, stdin_is_pipe(), faults)
-
-
 def _on_mujoco(request: RunRequest, description: RobotDescription) -> Session:
     if request.realtime:
         raise InputError("--realtime belongs to --backend bus: it paces a robot behind ports")
-    rate_hz, seed = _rate(request), request.seed
+    rate_hz, seed = control_rate(request), request.seed
     velocity = (0.0, 0.0)
     if description.start.moving:
         velocity = (_initial_speed(request, description), description.start.lateral_velocity)
@@ -158,7 +68,7 @@ def _on_mujoco(request: RunRequest, description: RobotDescription) -> Session:
 
 def _in_lockstep(request: RunRequest, description: RobotDescription) -> Session:
     """The dry run: the real driver on a virtual robot, both on the virtual clock."""
-    rate_hz, seed = _rate(request), request.seed
+    rate_hz, seed = control_rate(request), request.seed
     plant = Plant(description, rate_hz, seed, _nominal_motors(description))
     robot = VirtualRobot(description, plant, seed, rate_hz)
     robot.faults.plan(request.faults)
@@ -180,7 +90,7 @@ def _in_lockstep(request: RunRequest, description: RobotDescription) -> Session:
 
 def _on_terminals(request: RunRequest, description: RobotDescription) -> Session:
     """The dry run in real time: the virtual robot is another process behind ptys."""
-    rate_hz = _rate(request)
+    rate_hz = control_rate(request)
     with ExitStack() as stack:
         server = ServerProcess(request.robot, rate_hz, request.seed, request.overrides)
         stack.callback(server.close)
@@ -228,7 +138,13 @@ def _on_real_bus(request: RunRequest, description: RobotDescription) -> Session:
     mapping = GainMapping(description, calibration)
     urls = {key.partition(".")[2]: port for key, port in ports.items() if port is not None}
     backend = BusBackend(
-        description, MonotonicClock(), _rate(request), urls, calibration, mapping, guarded=True
+        description,
+        MonotonicClock(),
+        control_rate(request),
+        urls,
+        calibration,
+        mapping,
+        guarded=True,
     )
     return _session(request, description, backend, None)
 
@@ -253,14 +169,14 @@ def _estimator(
     request: RunRequest, description: RobotDescription, world: World | None
 ) -> Estimator:
     if request.estimator == "sensors":
-        return SensorEstimator(description, _rate(request))
+        return SensorEstimator(description, control_rate(request))
     if world is None:
         raise InputError("--estimator truth needs a simulated robot; a real one has sensors")
     return TruthEstimator(description, world.truth)
 
 
 def _controller(request: RunRequest, description: RobotDescription) -> Controller:
-    rate_hz, ankle_limit = _rate(request), bool(request.ankle_limit)
+    rate_hz, ankle_limit = control_rate(request), bool(request.ankle_limit)
     if description.actuation == "servo":
         return ServoWalker(description, rate_hz, ankle_limit)
     return TorqueWalker(
@@ -274,7 +190,8 @@ def _controller(request: RunRequest, description: RobotDescription) -> Controlle
     )
 
 
-def _rate(request: RunRequest) -> int:
+def control_rate(request: RunRequest) -> int:
+    """Control rate of a resolved request [Hz]."""
     if request.rate_hz is None:
         raise InputError("--rate: the robot has no default rate")
     return request.rate_hz
