@@ -1,8 +1,8 @@
 """The fault matrix: each fault in a walk of the virtual minibiped, how the robot reacts, and when.
 
-Emulated: the dry run in lockstep at 300 Hz, the nominal robot, walking 0.1 m/s; the fault comes one
-second after the first step. Time counts from the fault to the tick in which the safety chain
-decided; then sitting down takes 1.1 s, landing 0.4 s.
+Emulated: the dry run in lockstep at 300 Hz, the nominal robot, walking 0.1 m/s; the fault comes
+0.7 s after T = 0. Time counts from the fault to the tick in which the safety chain decided; then
+sitting down takes 1.1 s, landing 0.4 s.
 
 Run: `python benchmarks/fault_matrix.py`
 """
@@ -16,7 +16,7 @@ from hil.loop import Loop
 from hil.request import RunRequest
 from hil.session import Session
 
-START_S, DURATION_S = 1.0, 2.2
+START_S, DURATION_S = 0.7, 1.6
 ENDINGS = ("soft_stop", "land", "torque_off")
 
 
