@@ -77,6 +77,18 @@ def bus_budgets(
     return budgets
 
 
+def require_bus_speeds(description: RobotDescription) -> None:
+    """Raises InputError for a bus that is faster than one of its servos can be."""
+    for joint in description.joints:
+        model = find_servo_model(joint.servo or "")
+        bus = joint.bus or ""
+        if description.buses[bus].baud not in model.bauds:
+            raise InputError(
+                f"{description.file}: buses.{bus}.baud {description.buses[bus].baud}: "
+                f"{joint.name} is a {model.name}; its speeds: {', '.join(map(str, model.bauds))}"
+            )
+
+
 def port_url(port_urls: Mapping[str, str], name: str) -> str:
     """Where a bus or board is connected. Raises InputError."""
     if name not in port_urls:

@@ -11,6 +11,7 @@ from drivers.assembly import (
     bus_budgets,
     open_bus,
     port_url,
+    require_bus_speeds,
 )
 from drivers.boards.sensors import BoardSensors
 from drivers.bus_start import start_buses
@@ -98,6 +99,7 @@ class BusBackend:
     def open(self) -> None:
         """Connect and check; torque stays as it is found. Raises BackendError or InputError."""
         description = self._description
+        require_bus_speeds(description)
         for budget in bus_budgets(description):
             budget.check(self._rate_hz)
         self.calibration.check_against(description)

@@ -266,6 +266,27 @@ def test_old_firmware_is_read_plainly(rig):
     assert all(frame.joint_valid.all() for frame, _ in rig.run(30))
 
 
+def test_one_old_servo_costs_its_own_bus_the_fast_reads_and_no_other(rig):
+    rig.robot.servos["left_knee"].registers[Register.FIRMWARE_VERSION] = 42
+    rig.backend.open()
+    rig.backend.arm()
+    assert all(frame.joint_valid.all() for frame, _ in rig.run(30))
+    assert [bus.fast for bus in rig.backend._group.buses] == [False, True]
+
+
+def test_a_bus_faster_than_one_of_its_servos_is_refused(rig):
+    joints = [joint.model_dump() for joint in DESCRIPTION.joints]
+    joints[3]["servo"] = "XL330-M288"
+    data = DESCRIPTION.model_dump() | {"joints": joints}
+    data["buses"]["left_leg"]["baud"] = 4_500_000
+    strange = type(DESCRIPTION).model_validate(data)
+    with pytest.raises(InputError, match=r"buses\.left_leg\.baud 4500000: left_knee is a XL330"):
+        BusBackend(
+            strange, rig.clock, RATE, rig.robot.port_urls, rig.calibration,
+            GainMapping(DESCRIPTION, rig.calibration),
+        ).open()  # fmt: skip
+
+
 def test_the_bus_leaves_time_for_the_controller(rig):
     rig.backend.open()
     rig.backend.arm()
