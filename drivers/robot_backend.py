@@ -66,7 +66,7 @@ class BusBackend:
         """
         self.clock = clock
         self.changes: list[str] = []
-        """Servo settings that `open` corrected."""
+        """Servo settings that `open` corrected, and what is wrong with an adapter."""
         self._description = description
         self._rate_hz = rate_hz
         self.port_urls = dict(port_urls)

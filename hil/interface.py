@@ -359,6 +359,11 @@ class Backend(Protocol):
         ...
 
     @property
+    def changes(self) -> Sequence[str]:
+        """What `open` corrected or found wanting, a line each, for the operator."""
+        ...
+
+    @property
     def clock(self) -> Clock:
         """The time on which this backend lives."""
         ...

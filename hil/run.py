@@ -1,5 +1,6 @@
 """One run from a session to its folder: recording, report and picture."""
 
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -33,6 +34,8 @@ def run(session: Session, *, progress: bool = True) -> RunResult:
     """
     try:
         session.backend.open()
+        if session.request.live:  # a virtual robot is new in every run: there it is no news
+            sys.stderr.writelines(f"stride: {change}\n" for change in session.backend.changes)
         books = Books(session, progress=progress)
         loop = Loop(session, books.sinks)
     except BaseException:

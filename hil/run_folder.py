@@ -70,6 +70,7 @@ def make_meta(session: Session) -> dict[str, Any]:
             "cpus": os.cpu_count(),
         },
         "command": sys.argv,
+        "changes": list(session.backend.changes),
         **session.meta,
     }
 

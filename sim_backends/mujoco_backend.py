@@ -27,6 +27,8 @@ class MujocoBackend:
     """
 
     name = "mujoco"
+    changes = ()
+    """A plant has nothing to correct."""
 
     def __init__(
         self,

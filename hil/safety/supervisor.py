@@ -7,9 +7,6 @@ from hil.safety.decision import RUNNING, Action, SafetyState, WayOut, decide
 from hil.safety.monitor import Monitor, Situation
 from hil.safety.severity import Event, Fault, Severity
 
-FORGET_NS = 1_000_000_000
-"""A trouble that was away for longer is told again."""
-
 
 class Supervisor:
     """Judges every tick before its command is made. Raises nothing and sends nothing."""
@@ -22,7 +19,7 @@ class Supervisor:
         self._monitors = (self._body, *monitors)
         self._way_out = way_out
         self._pending: list[Event] = []
-        self._told: dict[tuple[str, str], int] = {}
+        self._told: set[tuple[str, str]] = set()
 
     def begin_walking(self, base_height: float) -> None:
         """T = 0, with the root body at a height [m]."""
@@ -50,15 +47,16 @@ class Supervisor:
         if self.state.severity > before.severity and self.state.severity >= Severity.SOFT_STOP:
             self._body.begin_sitting()
         if events:
-            self._write_down(events, situation.now_ns, time_s)
+            self._write_down(events, time_s)
         return action
 
-    def _write_down(self, events: list[Event], now_ns: int, time_s: float) -> None:
+    def _write_down(self, events: list[Event], time_s: float) -> None:
+        """Each trouble once a run: a link that is poor for long is one line, not hundreds."""
         for event in events:
             key = event.source, event.name
-            last_ns = self._told.get(key)
-            self._told[key] = now_ns
-            if last_ns is None or now_ns - last_ns > FORGET_NS:
-                told = event.severity < Severity.SOFT_STOP
-                reaction = "none" if told else event.severity.name.lower()
-                self.faults.append(Fault(time_s, event.source, event.name, reaction))
+            if key in self._told:
+                continue
+            self._told.add(key)
+            told = event.severity < Severity.SOFT_STOP
+            reaction = "none" if told else event.severity.name.lower()
+            self.faults.append(Fault(time_s, event.source, event.name, reaction))

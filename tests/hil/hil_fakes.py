@@ -25,6 +25,7 @@ class FakeBackend:
     """Perfect joints, and a journal of what was done to them."""
 
     name = "fake"
+    changes = ("left_knee: Return Delay Time 250 -> 0",)
 
     def __init__(self, clock=None):
         self.clock = clock or ManualClock()

@@ -22,6 +22,7 @@ def test_a_run_leaves_its_four_files_and_a_second_report(tmp_path):
     assert json.loads((out / "report.json").read_text()) == result.report
     assert copy.read_text() == (out / "report.json").read_text()
     meta = json.loads((out / "meta.json").read_text())
+    assert meta["changes"] == ["left_knee: Return Delay Time 250 -> 0"]
     assert (meta["seed"], meta["rung"], meta["request"]["duration_s"]) == (7, "dry run", 1.0)
     assert meta["weight_n"] == pytest.approx(2.6 * 9.81, rel=0.05)
     assert meta == read_recording(out).meta

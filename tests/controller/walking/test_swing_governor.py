@@ -10,11 +10,11 @@ INERTIA, DAMPING, STALL = [0.04] * 6, [0.851] * 6, [4.1] * 6
 HIP, KNEE, ANKLE = 2, 3, 4
 
 
-def governed(wanted, share=0.8, level=0.5):
+def governed(wanted, share=0.8, level=0.5, more=0.0):
     """Follow (q, v, a) of a function of time for hip pitch; what comes out, (ticks, 3, 6)."""
     config = GovernorConfig(share=share, time=0.015, level=level)
     governor = SwingGovernor(config, INERTIA, DAMPING, STALL)
-    governor.begin(np.zeros(6), np.zeros(6), 0.0)
+    governor.begin(np.zeros(6), np.zeros(6), 0.0, np.full(3, more))
     track = []
     for tick in range(1, 90):
         targets = np.zeros((3, 6))
@@ -56,7 +56,15 @@ def test_it_begins_where_the_leg_is():
     governor = SwingGovernor(GovernorConfig(share=0.8, time=0.015, level=0.5), INERTIA, DAMPING,
                              STALL)  # fmt: skip
     position, velocity = np.full(6, 0.2), np.full(6, 1.0)
-    governor.begin(position, velocity, 0.002)
+    governor.begin(position, velocity, 0.002, np.zeros(3))
     targets = [np.full(6, 0.2 + 0.002 + DT), np.full(6, 1.0), np.zeros(6)]
     governor.update(DT, *targets)
     assert targets[0][HIP] == pytest.approx(0.202 + DT, abs=2e-4)
+
+
+def test_a_heavier_rotor_is_given_more_time():
+    track = governed(lambda _: (-0.5, 0.0, 0.0), share=0.8, more=0.015)
+    velocity, acceleration = track[:, 1, HIP], track[:, 2, HIP]
+    before = np.concatenate(([0.0], velocity[:-1]))
+    torque = np.abs(0.055 * acceleration + 0.851 * before)
+    assert torque.max() == pytest.approx(0.8 * 4.1)
