@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from controller.estimation.config import ContactConfig
+from controller.estimation.dead_cells import DeadCells
 from hil.interface import Bools, Floats
 
 
@@ -13,7 +14,8 @@ class ContactDetector:
 
     f ← f + (1 − e^(−dt/τ))·(measured − f); a foot gains contact when the sum of its corners
     exceeds `on`·W and loses it below `off`·W, W the body weight. Cells that read tension are
-    taken as they are in the sum, so that zero-mean noise stays zero-mean.
+    taken as they are in the sum, so that zero-mean noise stays zero-mean. A cell without signal
+    is replaced (`DeadCells`).
     """
 
     def __init__(self, config: ContactConfig, weight: float, dt: float) -> None:
@@ -21,9 +23,11 @@ class ContactDetector:
         self._gain = 1.0 - math.exp(-dt / time) if time > 0.0 else 1.0
         self._on = config.on * weight
         self._off = config.off * weight
+        self._cells = DeadCells(weight, dt)
+        self._filtered: Floats = np.zeros((2, 4))
         self._change: Floats = np.zeros((2, 4))
         self.force: Floats = np.zeros((2, 4))
-        """Filtered corner forces [N], shape (2, 4)."""
+        """Filtered corner forces [N], dead cells replaced, shape (2, 4)."""
         self.contact: Bools = np.zeros(2, dtype=np.bool_)
         """Whether each foot is on the ground, shape (2,)."""
         self.corners: list[list[float]] = self.force.tolist()
@@ -34,10 +38,12 @@ class ContactDetector:
     def update(self, force: Floats) -> None:
         """Take the corner forces of one tick [N], shape (2, 4)."""
         change = self._change
-        np.subtract(force, self.force, out=change)
+        np.subtract(force, self._filtered, out=change)
         change *= self._gain
-        self.force += change
-        self.corners = self.force.tolist()
+        self._filtered += change
+        filtered = enumerate(self._filtered.tolist())
+        self.corners = [self._cells.repair(foot, forces) for foot, forces in filtered]
+        self.force[:] = self.corners
         contact = self.contact
         for foot, (a, b, c, d) in enumerate(self.corners):
             load = self.loads[foot] = a + b + c + d

@@ -6,6 +6,8 @@ from controller.walking.alteration import AlterationConfig
 from controller.walking.command_ramp import CommandConfig
 from controller.walking.gait import GaitConfig
 from controller.walking.heading import HeadingConfig
+from controller.walking.height_trim import HeightTrimConfig
+from controller.walking.learned_load import LearnedLoadConfig
 from controller.walking.place_trim import PlaceTrimConfig
 from controller.walking.sole_trim import SoleTrimConfig
 from controller.walking.swing_governor import GovernorConfig
@@ -113,10 +115,12 @@ class ServoWalkingConfig(Config):
     placement: PlacementConfig
     swing: SwingConfig
     governor: GovernorConfig
+    learned_load: LearnedLoadConfig
     balance: BalanceConfig
     timing: TimingConfig
     place_trim: PlaceTrimConfig
     sole_trim: SoleTrimConfig
+    height_trim: HeightTrimConfig
     alteration: AlterationConfig
     """Sagittal."""
     lateral_alteration: AlterationConfig

@@ -10,6 +10,7 @@ from controller.walking.command_ramp import CommandRamp
 from controller.walking.gait import Gait
 from controller.walking.heading import HeadingRamp
 from controller.walking.heading_frame import HeadingFrame, Pair
+from controller.walking.height_trim import HeightTrim
 from controller.walking.pendulum_state import PendulumState
 from controller.walking.place_trim import PlaceTrim
 from controller.walking.rotations import heading_of
@@ -44,6 +45,7 @@ class ServoStep:
         self._mean_speeds = StepAverage(), StepAverage()
         self.trim = PlaceTrim(config.place_trim)
         self.sole_trim = SoleTrim(config.sole_trim)
+        self.height_trim = HeightTrim(config.height_trim)
         self.frame = HeadingFrame()
         lead = config.latency + self._dt / 2
         self.state = PendulumState(model, config.gait.period, lead)
@@ -112,6 +114,9 @@ class ServoStep:
         if ended:
             self.trim.end_step(stance, dt)
             self.sole_trim.end_step(stance)
+            self.height_trim.land(
+                gait.stance, self._model.corner_positions, estimate.foot_force.tolist()
+            )
             self._end_step()
         if ended or not self._begun:
             self._begin_step()

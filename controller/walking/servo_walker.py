@@ -9,6 +9,7 @@ the measured place of the torso, and the virtual force acts as a centre of press
 import numpy as np
 
 from controller.robot_model import RobotModel
+from controller.walking.learned_load import LearnedLoad
 from controller.walking.leg_inertia import LegInertia
 from controller.walking.leg_kinematics import Vector
 from controller.walking.leg_targets import INSTANTS, LegPlanner, LegTargets
@@ -25,6 +26,8 @@ from hil.interface import SIDES, Estimate, Floats, Ints, JointCommand, Reference
 
 LEG_JOINTS = ("hip_yaw", "hip_roll", "hip_pitch", "knee", "ankle_pitch", "ankle_roll")
 
+PITCH = slice(2, 5)
+"""Hip pitch, knee and ankle pitch among the joints of a leg."""
 ANKLES = slice(4, 6)
 """Ankle pitch and roll among the joints of a leg."""
 
@@ -45,6 +48,7 @@ class ServoWalker:
         self._lead = config.latency + self._dt / 2
         self._model = model = RobotModel(description)
         self._legs = _leg_joints(description)
+        self._pitch_joints = self._legs[:, PITCH]
         self._planner = LegPlanner(model, config.hip_height)
         self._force = SupportForce(model)
         self._shift = WeightShift(config.weight_shift)
@@ -56,6 +60,7 @@ class ServoWalker:
         self._rest: Floats = np.array(description.start_position)
         self._inertia = LegInertia(model, self._legs)
         self._governor = self._swing_governor(description)
+        self._load = self._learned_load(description)
         self._governed_step = -1
 
     def step(self, estimate: Estimate, reference: Reference) -> JointCommand:
@@ -73,11 +78,23 @@ class ServoWalker:
         )
         torque = self.config.balance.torque_gain * self._force.torques(reactions)
         swing = step.gait.swing
-        torque[self._legs[swing]] += self.config.balance.inertia_gain * self._inertia.torque(
-            swing, targets.acceleration[swing]
+        torque[self._legs[swing]] += self._swing_torque(swing, targets)
+        self._load.add(
+            estimate.joint_position[self._pitch_joints[swing]],
+            targets.position[swing, PITCH],
+            targets.velocity[swing, PITCH],
+            targets.acceleration[swing, PITCH],
+            torque[self._pitch_joints[swing]],
         )
         self._report()
         return self._fill(targets, torque)
+
+    def _swing_torque(self, leg: int, targets: LegTargets) -> Floats:
+        """What moves the swing leg beyond its weight [N·m], (6,)."""
+        acceleration = targets.acceleration[leg]
+        torque = self.config.balance.inertia_gain * self._inertia.torque(leg, acceleration)
+        torque[PITCH] += self._load.torque(leg, targets.velocity[leg, PITCH], acceleration[PITCH])
+        return torque
 
     def _shift_weight(self) -> JointCommand:
         """Both legs carry the torso, which moves above the first stance foot."""
@@ -109,11 +126,12 @@ class ServoWalker:
         """World points of the swing ankle at the three instants [m]."""
         step, swing = self._step, self._swing
         rate, period = step.phase_rate, 1.0 / step.phase_rate
+        ground = self._planner.ankle_height + step.height_trim.value[step.gait.swing]
         points = []
         for instant in INSTANTS:
             phase = step.gait.phase + rate * (self._lead + instant)
             x, y = swing.horizontal(phase, step.lift_off, step.landing)
-            height = self._planner.ankle_height + swing.lift(phase, period)
+            height = ground + swing.lift(phase, period)
             points.append((x + step.ankle[0], y + step.ankle[1], height))
         return points
 
@@ -133,7 +151,8 @@ class ServoWalker:
             self._governed_step = gait.steps
             joints = legs[swing]
             measured = estimate.joint_position[joints], estimate.joint_velocity[joints]
-            self._governor.begin(*measured, self._lead - self._dt)
+            self._load.begin(swing)
+            self._governor.begin(*measured, self._lead - self._dt, self._load.inertia[swing])
         self._governor.update(
             self._dt, targets.position[swing], targets.velocity[swing], targets.acceleration[swing]
         )
@@ -145,6 +164,17 @@ class ServoWalker:
         damping = [joint.damping for joint in joints]
         stall = [joint.torque_limit for joint in joints]
         return SwingGovernor(self.config.governor, inertia, damping, stall)
+
+    def _learned_load(self, description: RobotDescription) -> LearnedLoad:
+        joints = [description.joints[joint] for joint in self._pitch_joints[0].tolist()]
+        return LearnedLoad(
+            self.config.learned_load,
+            [joint.stiffness for joint in joints],
+            [joint.damping for joint in joints],
+            [joint.torque_limit for joint in joints],
+            self._lead / self._dt,
+            self._dt,
+        )
 
     def _report(self) -> None:
         step, status = self._step, self.status

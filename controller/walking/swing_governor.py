@@ -46,10 +46,15 @@ class SwingGovernor:
         self._limits = [
             (i, d, config.share * s) for i, d, s in zip(inertia, damping, stall, strict=True)
         ]
+        self._more = dict.fromkeys((HIP_PITCH, KNEE, ANKLE_PITCH), 0.0)
         self._state: dict[int, tuple[float, float]] = {}
 
-    def begin(self, position: Floats, velocity: Floats, lead: float) -> None:
-        """A leg lifts off: measured joints, (6,) [rad], [rad/s]; targets are `lead` s ahead."""
+    def begin(self, position: Floats, velocity: Floats, lead: float, more_inertia: Floats) -> None:
+        """A leg lifts off: measured joints, (6,) [rad], [rad/s]; targets are `lead` s ahead.
+
+        `more_inertia` of this leg's pitch joints is added to the model's, (3,) [kg·m²].
+        """
+        self._more = dict(zip((HIP_PITCH, KNEE, ANKLE_PITCH), more_inertia.tolist(), strict=True))
         angles, speeds = position.tolist(), velocity.tolist()
         self._state = {
             joint: (angles[joint] + lead * speeds[joint], speeds[joint])
@@ -84,6 +89,7 @@ class SwingGovernor:
         """One joint's governed angle, speed and acceleration, one tick later."""
         q, v = self._state[joint]
         inertia, damping, torque = self._limits[joint]
+        inertia += self._more[joint]
         time = self._config.time
         a = acceleration + 2.0 * (speed - v) / time + (angle - q) / (time * time)
         a = max((-torque - damping * v) / inertia, min(a, (torque - damping * v) / inertia))
