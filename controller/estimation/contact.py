@@ -14,16 +14,18 @@ class ContactDetector:
 
     f ← f + (1 − e^(−dt/τ))·(measured − f); a foot gains contact when the sum of its corners
     exceeds `on`·W and loses it below `off`·W, W the body weight. Cells that read tension are
-    taken as they are in the sum, so that zero-mean noise stays zero-mean. A cell without signal
-    is replaced (`DeadCells`).
+    taken as they are in the sum, so that zero-mean noise stays zero-mean. A measured cell without
+    signal is replaced (`DeadCells`); the truth has none.
     """
 
-    def __init__(self, config: ContactConfig, weight: float, dt: float) -> None:
+    def __init__(
+        self, config: ContactConfig, weight: float, dt: float, cells: DeadCells | None = None
+    ) -> None:
         time = config.filter_time
         self._gain = 1.0 - math.exp(-dt / time) if time > 0.0 else 1.0
         self._on = config.on * weight
         self._off = config.off * weight
-        self._cells = DeadCells(weight, dt)
+        self._cells = cells
         self._filtered: Floats = np.zeros((2, 4))
         self._change: Floats = np.zeros((2, 4))
         self.force: Floats = np.zeros((2, 4))
@@ -41,8 +43,9 @@ class ContactDetector:
         np.subtract(force, self._filtered, out=change)
         change *= self._gain
         self._filtered += change
-        filtered = enumerate(self._filtered.tolist())
-        self.corners = [self._cells.repair(foot, forces) for foot, forces in filtered]
+        self.corners = self._filtered.tolist()
+        if self._cells is not None:
+            self.corners = [self._cells.repair(*foot) for foot in enumerate(self.corners)]
         self.force[:] = self.corners
         contact = self.contact
         for foot, (a, b, c, d) in enumerate(self.corners):

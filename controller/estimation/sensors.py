@@ -7,6 +7,7 @@ import numpy as np
 from controller.estimation.attitude import AttitudeFilter
 from controller.estimation.config import EstimatorConfig
 from controller.estimation.contact import ContactDetector
+from controller.estimation.dead_cells import DeadCells
 from controller.estimation.joint_state import JointStateFilter
 from controller.estimation.level_trim import LevelTrim
 from controller.estimation.odometry import CornerOdometry
@@ -31,7 +32,8 @@ class SensorEstimator:
         dt = 1.0 / rate_hz
         n = len(description.joints)
         self._model = RobotModel(description)
-        self._contact = ContactDetector(config.contact, self._model.weight, dt)
+        weight = self._model.weight
+        self._contact = ContactDetector(config.contact, weight, dt, DeadCells(weight, dt))
         self._joints = JointStateFilter(n, config.velocity_time, config.coast_time)
         self._attitude = AttitudeFilter(config, dt)
         self._trim = LevelTrim(config.trim, self._model.weight, dt)

@@ -53,7 +53,7 @@ def test_feet_are_judged_apart_and_never_pull():
 
 
 def test_the_detector_gives_repaired_forces():
-    contact = ContactDetector(ContactConfig(), WEIGHT, DT)
+    contact = ContactDetector(ContactConfig(), WEIGHT, DT, DeadCells(WEIGHT, DT))
     force = np.array([[0.0, 5.0, 7.0, 4.0], [0.0] * 4])
     for _ in range(LONG):
         contact.update(force)
