@@ -10,6 +10,7 @@ from sim_backends.uneven_floor import feelers_of
 
 _NONE, _TOE = -1, 2
 """Roles of geoms: left and right sole 0 and 1, left and right toe 2 and 3, others none."""
+_CORNERS = 4
 
 
 class FootLoads:
@@ -17,6 +18,7 @@ class FootLoads:
 
     Each contact's normal force goes to the corner of the sole in whose quadrant its point lies,
     seen from the centre of the sole in the axes of the foot body: front is x ≥ 0, left is y ≥ 0.
+    A feeler stays in its corner, so which that is, is known before.
     Valid between one mj_step and the next: forces, points and frames then all belong to the state
     before integration. With the dozen contacts of two feet, plain Python beats arrays here.
     It reads one MjData, whose arrays of fixed size it looks up once.
@@ -30,6 +32,8 @@ class FootLoads:
         static = model.body_weldid[model.geom_bodyid] == 0
         self._static: list[bool] = static.tolist()
         self._role = [_NONE] * model.ngeom
+        self._place = [_NONE] * model.ngeom
+        """Where in the list of corners a feeler's force goes."""
         self._frames: list[tuple[Floats, Floats]] = []
         """Centre of each sole, and its foot's rotation matrix row by row."""
         feet = (description.feet["left"], description.feet["right"])
@@ -39,8 +43,13 @@ class FootLoads:
                 geom = named(model, mujoco.mjtObj.mjOBJ_GEOM, name, description.model_path)
                 for touching in (geom, *feelers_of(model, name)):
                     self._role[touching] = role
+                    if touching != geom and role < _TOE:
+                        offset = (model.geom_pos[touching] - model.geom_pos[geom]).tolist()
+                        self._place[touching] = _CORNERS * role + _quadrant(*offset[:2])
                 if role < _TOE:
                     self._frames.append((data.geom_xpos[geom], data.xmat[model.geom_bodyid[geom]]))
+        if max(self._place) != _NONE:  # With feelers the soles themselves touch nothing.
+            self._frames.clear()
         self._wrench = np.zeros(6)
 
     def read(self) -> tuple[list[float], list[float]]:
@@ -48,20 +57,23 @@ class FootLoads:
         corners, toes = [0.0] * 8, [0.0] * 2
         data = self._data
         if data.ncon:
-            contact = data.contact
-            points, addresses = contact.pos.tolist(), contact.efc_address.tolist()
-            forces = data.efc_force.tolist()
+            contact, static, places = data.contact, self._static, self._place
+            points = contact.pos.tolist() if self._frames else []
             frames = [(centre.tolist(), axes.tolist()) for centre, axes in self._frames]
+            addresses, forces = contact.efc_address.tolist(), data.efc_force.tolist()
             for i, (first, second) in enumerate(contact.geom.tolist()):
-                role = self._role[second if self._static[first] else first]
-                ground = self._static[first] or self._static[second]
-                if role == _NONE or not ground or addresses[i] < 0:
+                geom = second if static[first] else first
+                role, address = self._role[geom], addresses[i]
+                ground = static[first] or static[second]
+                if role == _NONE or not ground or address < 0:
                     continue
-                force = forces[addresses[i]] if self._elliptic else self._normal_force(i)
-                if role >= _TOE:
-                    toes[role - _TOE] += force
+                force = forces[address] if self._elliptic else self._normal_force(i)
+                if places[geom] != _NONE:
+                    corners[places[geom]] += force
+                elif role < _TOE:
+                    corners[_CORNERS * role + _corner(points[i], frames[role])] += force
                 else:
-                    corners[4 * role + _corner(points[i], frames[role])] += force
+                    toes[role - _TOE] += force
         return corners, toes
 
     def _normal_force(self, contact: int) -> float:
@@ -77,9 +89,14 @@ def _corner(point: list[float], frame: tuple[list[float], list[float]]) -> int:
     """Index of the corner in whose quadrant of the sole a point lies."""
     centre, axes = frame
     dx, dy, dz = point[0] - centre[0], point[1] - centre[1], point[2] - centre[2]
-    rear = axes[0] * dx + axes[3] * dy + axes[6] * dz < 0.0
-    right = axes[1] * dx + axes[4] * dy + axes[7] * dz < 0.0
-    return 2 * rear + right
+    return _quadrant(
+        axes[0] * dx + axes[3] * dy + axes[6] * dz, axes[1] * dx + axes[4] * dy + axes[7] * dz
+    )
+
+
+def _quadrant(forward: float, left: float) -> int:
+    """Index of the corner on that side of the sole's centre."""
+    return 2 * (forward < 0.0) + (left < 0.0)
 
 
 def lowest_sole_point(

@@ -269,7 +269,8 @@ class ServoPhysics:
     @property
     def sensed_current(self) -> Floats:
         """What the servos measure: some models the current of their supply [A], shape (n,)."""
-        return np.where(self._senses_supply, self.duty * self.current, self.current)
+        current = self.current
+        return np.where(self._senses_supply, self.duty * current, current)
 
     def torque(self) -> Floats:
         """Motor torque in joint direction [N·m], shape (n,)."""

@@ -88,12 +88,13 @@ class UnevenFloor:
             quantity_stream(seed, "floor_shape").uniform(*heights, (_POINTS, _POINTS)).tolist()
         )
         names = [model.geom(i).name for i in range(model.ngeom)]
-        self._feelers = [i for i, name in enumerate(names) if name.startswith(_FEELER)]
-        self._planes = [i for i, name in enumerate(names) if name.startswith(_PLANE)]
+        self._feelers = np.array([i for i, name in enumerate(names) if name.startswith(_FEELER)])
+        self._planes = np.array([i for i, name in enumerate(names) if name.startswith(_PLANE)])
         # A geom in its body's frame is not placed afresh in every step, unless told.
         model.geom_sameframe[self._planes] = 0
         self._height = model.geom_pos[:, 2]
         self._position = data.geom_xpos
+        self._bottom: Floats = np.array([0.0, 0.0, _RADIUS])
 
     def at(self, x: float, y: float) -> float:
         """Height of the floor [m]."""
@@ -108,17 +109,20 @@ class UnevenFloor:
     def place(self) -> float:
         """Put the floor under every corner; how high the lowest corner is above it [m]."""
         lowest = np.inf
-        for (x, y, z), plane in self._corners():
+        for (x, y, z), plane in zip(self._points_of_corners(), self._planes, strict=True):
             self._height[plane] = height = self.at(x, y)
             lowest = min(lowest, z - height)
         return lowest
 
     def follow(self) -> None:
         """Put the floor under those corners that are in the air."""
-        for (x, y, z), plane in self._corners():
-            if z - self._height[plane] > _CLEARANCE:
+        points = self._points_of_corners()
+        floors = self._height[self._planes].tolist()
+        for (x, y, z), plane, floor in zip(points, self._planes, floors, strict=True):
+            if z - floor > _CLEARANCE:
                 self._height[plane] = self.at(x, y)
 
-    def _corners(self) -> list[tuple[tuple[float, float, float], int]]:
-        points: Floats = self._position[self._feelers] - np.array([0.0, 0.0, _RADIUS])
-        return list(zip(map(tuple, points.tolist()), self._planes, strict=True))
+    def _points_of_corners(self) -> list[list[float]]:
+        """Lowest points of the feelers, (x, y, z) each [m]."""
+        points: list[list[float]] = (self._position[self._feelers] - self._bottom).tolist()
+        return points

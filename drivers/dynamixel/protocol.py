@@ -178,8 +178,9 @@ def fast_status_start(data_lengths: Sequence[int]) -> bytes:
 def fast_status_block(crc: int, error: int, servo_id: int, data: bytes) -> tuple[bytes, int]:
     """One servo's block after everything with running CRC `crc`; and the CRC behind it."""
     body = bytes((error, servo_id)) + data
-    own = crc16(body, crc).to_bytes(2, "little")
-    return body + own, crc16(body + own, crc)
+    crc = crc16(body, crc)
+    own = crc.to_bytes(2, "little")
+    return body + own, crc16(own, crc)
 
 
 def encode_fast_status(blocks: Sequence[FastBlock]) -> bytes:
@@ -240,6 +241,8 @@ class PacketReader:
 
     def feed(self, data: bytes) -> list[Packet]:
         """Take what was received; return the packets that are complete now."""
+        if not self._buffer and _is_whole(data):
+            return [_decoded(data)]
         self._buffer += data
         packets: list[Packet] = []
         while self._seek_header():
@@ -274,11 +277,23 @@ class PacketReader:
             self._skip(1)
             return
         del self._buffer[:size]
-        body = raw[PREFIX_SIZE:-2]
-        if not (raw[4] == BROADCAST_ID and body[0] == Instruction.STATUS):
-            body = unstuff(body)
-        packets.append(Packet(raw[4], body[0], body[1:]))
+        packets.append(_decoded(raw))
 
     def _skip(self, count: int) -> None:
         self.skipped_bytes += count
         del self._buffer[:count]
+
+
+def _is_whole(data: bytes) -> bool:
+    """Whether this is one sound packet and nothing else."""
+    length = len(data) - PREFIX_SIZE
+    begins = length >= 3 and data.startswith(HEADER) and data[5] | data[6] << 8 == length
+    return begins and length <= MAX_LENGTH and crc16(data[:-2]) == data[-2] | data[-1] << 8
+
+
+def _decoded(raw: bytes) -> Packet:
+    """A whole packet; the answer to a fast read is not stuffed."""
+    body = raw[PREFIX_SIZE:-2]
+    if not (raw[4] == BROADCAST_ID and body[0] == Instruction.STATUS):
+        body = unstuff(body)
+    return Packet(raw[4], body[0], body[1:])

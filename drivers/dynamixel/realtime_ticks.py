@@ -56,7 +56,7 @@ class RealtimeTicks:
             return False
         # One more than allowed below zero wraps to a large number: one comparison for both ends.
         raised = ticks * _HALF - self._offset[index] - (_host(sample_ns) - _LIMIT & 0xFFFF)
-        if raised.max() > 2 * _LIMIT:
+        if max(raised.tolist()) > 2 * _LIMIT:
             return False
         self._last[index] = ticks
         self._calls += 1

@@ -31,18 +31,30 @@ class _RareRegister:
         self._items = np.zeros(len(ids), _GAIN_DTYPE)
         self._items["id"] = ids
         self._sent = np.full(len(ids), _NEVER, dtype=np.int64)
+        self._last = b""
+        """All joints' values when nothing was left to send."""
 
     def forget(self) -> None:
         """Send every servo's value again."""
         self._sent[:] = _NEVER
+        self._last = b""
 
     def compare(self, place: int, found: int | None) -> None:
         """Send one servo's value again if it is found to have another."""
         if found is not None and found != self._sent[place]:
             self._sent[place] = _NEVER
+            self._last = b""
 
-    def encode(self, values: Ints) -> bytes:
-        """A sync write of the changed values, empty if there are none."""
+    def encode(self, whole: Ints, joints: Ints) -> bytes:
+        """A sync write of the changed values, empty if there are none.
+
+        `whole` has the values of the robot's joints, `joints` are those of the bus.
+        """
+        key = whole.tobytes()
+        if key == self._last:
+            return b""
+        self._last = key
+        values = whole[joints]
         changed = values != self._sent
         if not changed.any():
             return b""
@@ -81,12 +93,12 @@ class ServoWriter:
         """Packets to send, in the order in which servos should act on them."""
         joints = self._joints
         self._goals["value"] = goals.position[joints]
-        current = b"" if goals.current is None else self._current.encode(goals.current[joints])
+        current = b"" if goals.current is None else self._current.encode(goals.current, joints)
         return (
             current
-            + self._p_gain.encode(goals.p_gain[joints])
-            + self._d_gain.encode(goals.d_gain[joints])
-            + self._pwm.encode(goals.pwm_limit[joints])
+            + self._p_gain.encode(goals.p_gain, joints)
+            + self._d_gain.encode(goals.d_gain, joints)
+            + self._pwm.encode(goals.pwm_limit, joints)
             + encode_instruction(
                 BROADCAST_ID, Instruction.SYNC_WRITE, self._head + self._goals.tobytes()
             )

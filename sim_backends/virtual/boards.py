@@ -69,6 +69,7 @@ class SensorBoard:
             description.noise.board_jitter_us + description.noise.usb_jitter_us
         )
         self._last_arrival_ns = 0
+        self._frame_size = self._wire_ns = 0
         self._index = plant.substep_index + int(random.integers(self._stride))
         self._sample_ns = plant.grid_time_ns(self._index)
         clock.schedule(self._sample_ns, self._sample)
@@ -93,9 +94,11 @@ class SensorBoard:
         if self.rewrite is not None:
             frame = self.rewrite(frame)
         self._sequence += 1
-        wire_ns = wire_time_ns(len(frame), self._baud)
+        size = len(frame)
+        if size != self._frame_size:
+            self._frame_size, self._wire_ns = size, wire_time_ns(size, self._baud)
         jitter_ns = int(self._random.random() * self._jitter_ns)
-        arrival_ns = max(now_ns + self._hold_ns + wire_ns + jitter_ns, self._last_arrival_ns)
+        arrival_ns = max(now_ns + self._hold_ns + self._wire_ns + jitter_ns, self._last_arrival_ns)
         self._last_arrival_ns = arrival_ns
         if self._faults is None:
             self._port.deliver_at(arrival_ns, frame)
@@ -164,4 +167,7 @@ class InertialUnit:
 
 def _raw(values: list[float], unit: float) -> list[int]:
     """Register counts, saturated to 16 bits."""
-    return [max(-_INT16, min(_INT16, math.floor(v / unit + 0.5))) for v in values]
+    counts = [math.floor(v / unit + 0.5) for v in values]
+    if max(counts) > _INT16 or min(counts) < -_INT16:
+        return [max(-_INT16, min(_INT16, count)) for count in counts]
+    return counts

@@ -43,43 +43,66 @@ class VirtualClock:
 
     def sleep_until_ns(self, time_ns: int) -> None:
         """Advance to an absolute time; return at once if it is past."""
-        while self.advance_once(time_ns):
-            pass
+        self._advance(time_ns, stops=False)
 
     def wait_readable(self, ports: Sequence[Readable], deadline_ns: int) -> None:
         """Advance until one of the ports has bytes, or to the deadline."""
         if _readable(ports):
             return
-        seen = self.deliveries
-        while self.advance_once(deadline_ns):
-            if self.deliveries != seen:
-                seen = self.deliveries
-                if _readable(ports):
-                    return
+        while self._advance(deadline_ns, stops=True):
+            if _readable(ports):
+                return
 
-    def advance_once(self, limit_ns: int) -> bool:
-        """One event or substep up to a time; False when there is none and the time is reached."""
-        events = self._events
-        if events and events[0][0] < self._grid_ns:
-            if events[0][0] <= limit_ns:
-                time_ns, _, callback = heappop(events)
-                if time_ns > self._now_ns:
-                    self._now_ns = time_ns
-                callback()
-                return True
-        elif self._grid_ns <= limit_ns:
-            self._now_ns = self._grid_ns
-            self.plant.substep()
-            self._grid_ns = self.plant.grid_time_ns(self.plant.substep_index + 1)
-            return True
+    def _advance(self, limit_ns: int, *, stops: bool) -> bool:
+        """Advance to a time; True at the first delivery, if it is to stop there."""
+        events, seen = self._events, self.deliveries
+        while True:
+            if events and events[0][0] < self._grid_ns:
+                if events[0][0] > limit_ns:
+                    break
+                self._run_event()
+                if stops and self.deliveries != seen:
+                    return True
+            elif self._grid_ns <= limit_ns:
+                self._run_substep()
+            else:
+                break
         if limit_ns > self._now_ns:
             self._now_ns = limit_ns
         return False
+
+    def _run_event(self) -> None:
+        time_ns, _, callback = heappop(self._events)
+        if time_ns > self._now_ns:
+            self._now_ns = time_ns
+        callback()
+
+    def _run_substep(self) -> None:
+        plant = self.plant
+        self._now_ns = self._grid_ns
+        plant.substep()
+        self._grid_ns = plant.grid_time_ns(plant.substep_index + 1)
+
+    def advance_once(self, limit_ns: int) -> bool:
+        """One event or substep up to a time; False when there is none and the time is reached."""
+        next_ns = self.next_ns()
+        if next_ns > limit_ns:
+            self._now_ns = max(self._now_ns, limit_ns)
+            return False
+        events = self._events
+        if events and events[0][0] < self._grid_ns:
+            self._run_event()
+        else:
+            self._run_substep()
+        return True
 
 
 def _readable(ports: Sequence[Readable]) -> bool:
     """Whether one of them has bytes, or is lost: reading from it will tell."""
     try:
-        return any(port.in_waiting for port in ports)
+        for port in ports:
+            if port.in_waiting:
+                return True
     except OSError:
         return True
+    return False

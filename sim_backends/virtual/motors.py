@@ -61,13 +61,13 @@ class MotorBank:
         self._index = -1
         self._readings: list[Reading] = []
 
-    def readings(self) -> list[Reading]:
-        """Readings of all motors at the last grid point."""
+    def reading(self, motor: int) -> Reading:
+        """Reading of one motor at the last grid point."""
         index = self._plant.substep_index
         if index != self._index:
             self._index = index
             self._readings = self._read()
-        return self._readings
+        return self._readings[motor]
 
     def _read(self) -> list[Reading]:
         physics = self.physics
@@ -99,7 +99,7 @@ class Motor:
 
     def reading(self) -> Reading:
         """What the servo measures now."""
-        return self._bank.readings()[self._index]
+        return self._bank.reading(self._index)
 
     def trajectory(self) -> tuple[int, int]:
         """Velocity Trajectory [0.229 rev/min] and Position Trajectory [counts]."""
@@ -174,7 +174,8 @@ class Motor:
 
     def hardware_error(self) -> int:
         """Hardware Error Status: latched bits; one in the Shutdown mask has opened the bridge."""
-        return int(self._bank.physics.protection.errors[self._index])
+        errors: int = self._bank.physics.protection.errors.item(self._index)
+        return errors
 
     def reboot(self) -> None:
         """Torque off and errors forgotten; then set everything again."""

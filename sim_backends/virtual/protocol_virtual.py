@@ -62,7 +62,10 @@ class Serial(serial.SerialBase):
     @property
     def in_waiting(self) -> int:
         """Bytes that can be read at once."""
-        return len(self._held().received)
+        line = self._line
+        if line is None or not line.plugged or line.plugged_times != self._opened:
+            line = self._held()
+        return len(line.received)
 
     def read(self, size: int = 1) -> bytes:
         """Up to `size` bytes that have arrived."""
