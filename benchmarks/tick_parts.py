@@ -50,7 +50,7 @@ TICK_PARTS = (
     "hil.timing.TickSchedule.wait",
     "hil.timing.TickSchedule.finish",
     "hil.schedule.Operator.reference",
-    "hil.safety.Supervisor.judge",
+    "hil.safety.supervisor.Supervisor.judge",
     "hil.limits.JointLimits.apply",
     "hil.recorder.Recorder.put",
     "controller.estimation.truth.TruthEstimator.update",
