@@ -26,8 +26,6 @@ class SafetyState:
 
     severity: Severity = Severity.OK
     """OK, or the latched severity."""
-    cause: Event | None = None
-    """The event that latched it; none for the walk's own end."""
     since_ns: int = 0
     """When it was latched [ns]."""
 
@@ -49,16 +47,23 @@ def decide(
     """The state after this tick and what to do in it.
 
     The most severe event wins. From SOFT_STOP on a severity is latched and only rises; SIT and
-    LAND end in OFF when their time is over.
+    LAND end in OFF when their time is over, and nothing that comes later moves the robot again.
     """
+    action = _action(now_ns, state, way_out)
+    if action is Action.OFF:
+        return state, action
     worst = max(events, key=lambda event: event.severity, default=None)
     if worst is not None and worst.severity > max(state.severity, Severity.WARN):
-        state = SafetyState(worst.severity, worst, now_ns)
+        state = SafetyState(worst.severity, now_ns)
+    return state, _action(now_ns, state, way_out)
+
+
+def _action(now_ns: int, state: SafetyState, way_out: WayOut) -> Action:
     elapsed_ns = now_ns - state.since_ns
     if state.severity == Severity.OK:
-        return state, Action.RUN
+        return Action.RUN
     if state.severity == Severity.SOFT_STOP and elapsed_ns < way_out.sit_ns:
-        return state, Action.SIT
+        return Action.SIT
     if state.severity == Severity.LAND and elapsed_ns < way_out.land_ns:
-        return state, Action.LAND
-    return state, Action.OFF
+        return Action.LAND
+    return Action.OFF

@@ -32,7 +32,7 @@ class Supervisor:
     def finish(self, now_ns: int) -> None:
         """The walk is over: sit down, then torque off. No fault."""
         if self.state.severity == Severity.OK:
-            self.state = SafetyState(Severity.SOFT_STOP, None, now_ns)
+            self.state = SafetyState(Severity.SOFT_STOP, now_ns)
 
     def judge(self, situation: Situation, time_s: float) -> Action:
         """What to do in this tick; `time_s` from T = 0, for the book."""

@@ -316,3 +316,10 @@ def test_sitting_ends_in_torque_off_in_time():
     assert action is Action.SIT
     assert decide(999, state, [], WAY_OUT)[1] is Action.SIT
     assert decide(1_000, state, [], WAY_OUT)[1] is Action.OFF
+
+
+def test_a_fall_that_begins_after_torque_is_off_moves_nothing():
+    state, _ = decide(0, RUNNING, [Event("x", "y", Severity.SOFT_STOP)], WAY_OUT)
+    state, action = decide(1_000, state, [], WAY_OUT)
+    assert action is Action.OFF
+    assert decide(1_001, state, [Event("x", "y", Severity.LAND)], WAY_OUT)[1] is Action.OFF
