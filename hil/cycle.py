@@ -17,7 +17,7 @@ from hil.interface import (
     WalkStatus,
 )
 from hil.limits import JointLimits
-from hil.robot_facts import robot_facts
+from hil.robot_facts import body_weight
 from hil.safety.assembly import make_supervisor
 from hil.safety.decision import Action
 from hil.safety.monitor import Situation
@@ -75,7 +75,7 @@ class Cycle:
     def __init__(self, session: Session, rate_hz: int, sinks: tuple[Sink, ...]) -> None:
         description, n = session.description, len(session.description.joints)
         self.rate_hz = rate_hz
-        weight_n = robot_facts(description).weight if description.actuation == "servo" else 0.0
+        weight_n = body_weight(description) if description.actuation == "servo" else 0.0
         paced = not session.request.lockstep
         self.supervisor = make_supervisor(description, rate_hz, weight_n, paced=paced)
         self.error: Exception | None = None

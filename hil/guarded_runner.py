@@ -7,13 +7,11 @@ import numpy as np
 from hil.errors import BackendError
 from hil.interface import NEVER_NS, Floats, JointCommand, SensorFrame
 from hil.limits import JointLimits
+from hil.safety.silence import MAX_MISSED_TICKS
 from hil.session import Session
+from hil.startup import SENSOR_TIMEOUT_S
 from hil.timing import TickSchedule
 
-SENSOR_TIMEOUT_S = 1.0
-"""A joint that has not been heard of by then is missing."""
-MAX_SILENT_TICKS = 5
-"""A joint not heard of in more ticks than this in a row has lost its servo."""
 MAX_TEMPERATURE = 65.0
 """[°C], below the limit of every servo."""
 MAX_ERROR = 0.5
@@ -74,7 +72,7 @@ class GuardedRunner:
         self._astray += 1
         self._astray[np.abs(command.position - frame.joint_position) < MAX_ERROR] = 0
         for bad, what in (
-            (self._silent > MAX_SILENT_TICKS, "is silent"),
+            (self._silent > MAX_MISSED_TICKS, "is silent"),
             (frame.joint_error != 0, "reports a hardware error"),
             (frame.joint_temperature > MAX_TEMPERATURE, f"is hotter than {MAX_TEMPERATURE:g} °C"),
             (self._astray > ERROR_TICKS, f"does not come within {MAX_ERROR:g} rad of its goal"),

@@ -17,9 +17,8 @@ from hil.servo import CENTRE_COUNTS, COUNTS_PER_RADIAN, MotorParameters, ServoGo
 from hil.session import Session
 from hil.shutdown import stop_and_close
 from hil.signals import StopSignals
+from hil.startup import RAMP_S, PoseRamp, default_command
 
-RAMP_S = 1.0
-"""From the pose found to the start pose."""
 VOLTAGE_FILTER_S = 0.5
 """Time constant over which voltage readings are averaged."""
 
@@ -90,34 +89,6 @@ class _Samples:
             goal - float(self._rig.offsets[joint]),
             gain,
         )
-
-
-def default_command(session: Session) -> JointCommand:
-    """The start pose with the robot's own gains."""
-    joints = session.description.joints
-    command = JointCommand.zeros(len(joints))
-    command.position[:] = session.description.start_position
-    command.stiffness[:] = [one.stiffness for one in joints]
-    command.damping[:] = [one.damping for one in joints]
-    return command
-
-
-class _Ramp:
-    """Moves every joint from the present pose to the start pose; the way is 3s² − 2s³."""
-
-    def __init__(self, session: Session, present: Floats, ticks: int) -> None:
-        self._present = present
-        self._way = np.array(session.description.start_position) - present
-        self._ticks = ticks
-        self._done = 0
-        self._command = default_command(session)
-
-    def command(self) -> JointCommand:
-        """The command of the next tick."""
-        self._done = min(self._done + 1, self._ticks)
-        s = self._done / self._ticks
-        self._command.position[:] = self._present + self._way * (s * s * (3.0 - 2.0 * s))
-        return self._command
 
 
 class _Mover:
@@ -201,12 +172,12 @@ def _move(
             session.backend.arm()
             runner.begin()
             ramp_ticks = round(RAMP_S * rate_hz)
-            ramp = _Ramp(session, present, ramp_ticks)
+            ramp = PoseRamp(session, present, ramp_ticks)
             mover = _Mover(session, joint, excitation)
             total = ramp_ticks + excitation.goal.size
             for tick in range(total):
                 if tick < ramp_ticks:
-                    runner.tick(ramp.command())
+                    runner.tick(ramp.step())
                 else:
                     samples.put(runner.tick(mover.command()))
                 signals.check()

@@ -10,6 +10,9 @@ from hil.description import RobotDescription
 from hil.errors import DescriptionError
 from hil.interface import Floats
 
+GRAVITY = 9.81
+"""On the ground that robots stand on [m/s²]."""
+
 
 @dataclass(frozen=True, slots=True)
 class RobotFacts:
@@ -50,8 +53,17 @@ def robot_facts(description: RobotDescription) -> RobotFacts:
     names = ("left_hip_pitch", "left_knee", description.feet["left"].ankle)
     hip, knee, ankle = (_anchor(description, model, data, name) for name in names)
     length = float(np.linalg.norm(hip - knee) + np.linalg.norm(knee - ankle))
-    mass = float(model.body(description.root).subtreemass[0])
-    return RobotFacts(mass, length, float(-model.opt.gravity[2]))
+    return RobotFacts(_mass(description, model), length, float(-model.opt.gravity[2]))
+
+
+def body_weight(description: RobotDescription) -> float:
+    """Weight of the robot's model [N]."""
+    model = mujoco.MjModel.from_xml_path(str(description.model_path))
+    return _mass(description, model) * GRAVITY
+
+
+def _mass(description: RobotDescription, model: mujoco.MjModel) -> float:
+    return float(model.body(description.root).subtreemass[0])
 
 
 def _anchor(

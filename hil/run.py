@@ -14,7 +14,7 @@ from hil.report import make_report
 from hil.run_folder import make_meta, make_run_folder, write_json
 from hil.safety.severity import Fault
 from hil.session import Session
-from hil.trace import TraceSink
+from hil.trace import Trace, TraceSink
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +50,22 @@ def run(session: Session, *, progress: bool = True) -> RunResult:
     return RunResult(books.folder, books.close(loop.outcome))
 
 
-def session_statistics(session: Session) -> dict[str, float | None]:
+def session_report(
+    session: Session, outcome: Outcome, trace: Trace, weight_n: float
+) -> dict[str, Any]:
+    """The report of a session that is closed, or has nothing more to say."""
+    return make_report(
+        session.request,
+        session.description.name,
+        outcome,
+        trace,
+        weight_n,
+        _statistics(session),
+        truth=session.world is not None,
+    )
+
+
+def _statistics(session: Session) -> dict[str, float | None]:
     """The backend's statistics, with the session's figures where it has none."""
     known = session.backend.statistics()
     more = session.figures()
@@ -76,15 +91,7 @@ class Books:
         """Finish the recording, write report and picture; the report."""
         self._close_recorder(outcome)
         session, trace = self._session, self._trace.trace()
-        report = make_report(
-            session.request,
-            session.description.name,
-            outcome,
-            trace,
-            self._meta["weight_n"],
-            session_statistics(session),
-            truth=session.world is not None,
-        )
+        report = session_report(session, outcome, trace, self._meta["weight_n"])
         write_json(self.folder / "report.json", report)
         if session.request.report is not None:
             write_json(session.request.report, report)

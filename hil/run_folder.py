@@ -11,15 +11,12 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-import mujoco
-
 from hil import __version__
-from hil.description import RobotDescription
 from hil.errors import InputError
+from hil.robot_facts import body_weight
 from hil.session import Session
 
 PARTS = ("mujoco", "numpy", "cma", "dynamixel-sdk", "pyserial", "mcap")
-GRAVITY = 9.81
 
 
 def make_run_folder(out: Path | None, robot: str) -> Path:
@@ -81,12 +78,6 @@ def rung(session: Session) -> str:
     if request.backend == "mujoco":
         return "simulation"
     return "live" if request.bus == "real" else "dry run"
-
-
-def body_weight(description: RobotDescription) -> float:
-    """Weight of the robot's model [N]."""
-    model = mujoco.MjModel.from_xml_path(str(description.model_path))
-    return float(model.body(description.root).subtreemass[0] * GRAVITY)
 
 
 def write_json(path: Path, data: dict[str, Any]) -> None:

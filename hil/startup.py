@@ -82,6 +82,16 @@ def _require_in_range(session: Session, present: Floats) -> None:
         )
 
 
+def default_command(session: Session) -> JointCommand:
+    """The start pose with the robot's own gains."""
+    joints = session.description.joints
+    command = JointCommand.zeros(len(joints))
+    command.position[:] = session.description.start_position
+    command.stiffness[:] = [joint.stiffness for joint in joints]
+    command.damping[:] = [joint.damping for joint in joints]
+    return command
+
+
 class PoseRamp:
     """Moves every joint from the present pose to the start pose, smoothly, and holds it.
 
@@ -89,18 +99,19 @@ class PoseRamp:
     """
 
     def __init__(self, session: Session, present: Floats, ticks: int) -> None:
-        joints = session.description.joints
         self._present = present
         self._way = np.array(session.description.start_position) - present
         self._ticks = ticks
         self._done = 0
-        self._command = JointCommand.zeros(len(joints))
-        self._command.stiffness[:] = [joint.stiffness for joint in joints]
-        self._command.damping[:] = [joint.damping for joint in joints]
+        self._command = default_command(session)
 
     def command(self, estimate: Estimate, reference: Reference) -> JointCommand:
-        """The command of the next tick."""
+        """The command of the next tick, for a loop that offers what it knows."""
         del estimate, reference  # The ramp is the same whatever the robot does.
+        return self.step()
+
+    def step(self) -> JointCommand:
+        """The command of the next tick."""
         self._done = min(self._done + 1, self._ticks)
         s = self._done / self._ticks
         np.multiply(self._way, s * s * (3.0 - 2.0 * s), out=self._command.position)

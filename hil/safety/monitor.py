@@ -17,8 +17,6 @@ class Situation:
     """The truth where it is known."""
     applied: AppliedCommand
     """What was sent in the tick before."""
-    skipped: int = 0
-    """Ticks that were left out before this one, because it came late."""
     walking: bool = False
     """From T = 0 until the robot begins to sit down."""
 

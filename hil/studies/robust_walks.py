@@ -4,8 +4,8 @@ import numpy as np
 from pydantic import PositiveFloat, PositiveInt
 
 from hil.gait_report import flat_mid_stance, heading_error
+from hil.robot_facts import body_weight
 from hil.robot_files import load_robot
-from hil.run_folder import body_weight
 from hil.schedule import Push
 from hil.studies.pushes import DIRECTIONS, PhaseCase, time_two_steps
 from hil.studies.servo_loads import ServoLoads

@@ -11,10 +11,9 @@ from hil.errors import StrideError
 from hil.gait_report import measured_from
 from hil.interface import Floats, Ints
 from hil.loop import Loop
-from hil.report import make_report
 from hil.request import RunRequest
-from hil.run import session_statistics
-from hil.run_folder import body_weight
+from hil.robot_facts import body_weight
+from hil.run import session_report
 from hil.studies.noisy_loads import NoisyLoads
 from hil.trace import Trace, TraceSink
 
@@ -33,14 +32,19 @@ class Walk:
     @property
     def stopped_s(self) -> float | None:
         """Time of the fall, or of another fault that ended the walk [s]; None at its full end."""
-        ends = [fault for fault in self.report["faults"] if fault["reaction"] != "none"]
-        return float(ends[0]["time_s"]) if ends else None
+        end = self._end()
+        return None if end is None else float(end["time_s"])
 
     @property
     def ending(self) -> str | None:
         """Name of the fault that ended the walk: `fell`, most often."""
-        ends = [fault for fault in self.report["faults"] if fault["reaction"] != "none"]
-        return str(ends[0]["name"]) if ends else None
+        end = self._end()
+        return None if end is None else str(end["name"])
+
+    def _end(self) -> dict[str, Any] | None:
+        """The fault that ended the walk."""
+        ends = (fault for fault in self.report["faults"] if fault["reaction"] != "none")
+        return next(ends, None)
 
 
 def walk(request: RunRequest, *more: Sink, cell_noise_n: float = 0.0) -> Walk:
@@ -58,15 +62,8 @@ def walk(request: RunRequest, *more: Sink, cell_noise_n: float = 0.0) -> Walk:
         sink = TraceSink(len(session.description.joints), round(request.duration_s * rate_hz))
         outcome = Loop(session, (sink, *more), sits=False).run()
         trace = sink.trace()
-        report = make_report(
-            session.request,
-            session.description.name,
-            outcome,
-            trace,
-            body_weight(session.description),
-            session_statistics(session),
-            truth=session.world is not None,
-        )
+        weight_n = body_weight(session.description)
+        report = session_report(session, outcome, trace, weight_n)
     finally:
         session.close()
     return Walk(report, trace)

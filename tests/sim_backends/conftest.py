@@ -28,6 +28,23 @@ def make_plant(minibiped):
     return make
 
 
+@pytest.fixture
+def in_the_air(make_plant):
+    """A plant held off the floor without sag, its servos on; no weight moves it, or its own."""
+
+    def make(*overrides, settle_s=0.2, gravity=False):
+        plant = make_plant("supply.resistance=0.0", *overrides)
+        plant.data.qpos[2] += 1.0
+        if not gravity:
+            plant.model.opt.gravity[:] = 0.0
+        plant.set_support(True)
+        hold(plant)
+        run(plant, settle_s)
+        return plant
+
+    return make
+
+
 def goals_at(angles, p_gain=800, pwm_limit=885):
     """Register values that hold joint angles [rad], all servos turning the joint's way."""
     n = len(angles)

@@ -5,7 +5,7 @@ import pytest
 
 from hil.twin import Plant as PlantSettings
 from sim_backends.gear_friction import GearFriction
-from tests.sim_backends.conftest import hold, run
+from tests.sim_backends.conftest import run
 
 KNEE = 3
 BASE, STRIBECK, LOAD = 0.0615, 0.0239, 0.2343
@@ -33,26 +33,12 @@ def test_it_fades_to_the_base_as_the_joint_moves():
     assert friction(6.0, 1.0) == pytest.approx(BASE, abs=2e-3)
 
 
-@pytest.fixture
-def desk(make_plant):
-    def make(*overrides):
-        plant = make_plant("supply.resistance=0.0", *overrides)
-        plant.data.qpos[2] += 1.0
-        plant.model.opt.gravity[:] = 0.0
-        plant.set_support(True)
-        hold(plant)
-        run(plant, 0.2)
-        return plant
-
-    return make
-
-
 @pytest.mark.parametrize("gap", [0.0, 0.01])
-def test_a_loaded_joint_sticks(desk, gap):
+def test_a_loaded_joint_sticks(in_the_air, gap):
     """Under load it takes a larger change of torque to move it, with and without backlash."""
     moves = []
     for overrides in ((), (f"load_friction={LOAD}", f"stribeck_friction={STRIBECK}")):
-        plant = desk("joint_friction=0.0615", f"backlash={gap}", *overrides)
+        plant = in_the_air("joint_friction=0.0615", f"backlash={gap}", *overrides)
         plant.data.qfrc_applied[6 + KNEE] = 1.5
         run(plant, 1.0)
         before = plant.joint_position[KNEE]
@@ -63,11 +49,11 @@ def test_a_loaded_joint_sticks(desk, gap):
     assert moves[1] < 0.3 * moves[0]
 
 
-def test_viscous_friction_lowers_the_top_speed(desk):
+def test_viscous_friction_lowers_the_top_speed(in_the_air):
     """Turning freely: k·(V − k·ω)/r = b·ω."""
     speeds = []
     for viscous in (0.0, 0.2):
-        plant = desk("joint_friction=0", "armature=0.001", f"viscous_friction={viscous}")
+        plant = in_the_air("joint_friction=0", "armature=0.001", f"viscous_friction={viscous}")
         plant.servos.goal[0] += 800
         peak = 0.0
         for _ in range(300):

@@ -1,29 +1,22 @@
 """Backlash: a gap between motor and joint that every reversal has to cross."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
 from sim_backends.gear_train import ROTOR
-from tests.sim_backends.conftest import hold, run
+from tests.sim_backends.conftest import run
 
 GAP = 0.0175
 KNEE = 3
 
 
 @pytest.fixture
-def floating(make_plant):
+def floating(in_the_air):
     """Held in the air without gravity: only motors and gears move the joints."""
 
-    def make(*overrides):
-        plant = make_plant("supply.resistance=0.0", *overrides)
-        plant.data.qpos[2] += 1.0
-        plant.model.opt.gravity[:] = 0.0
-        plant.set_support(True)
-        hold(plant)
-        run(plant, 0.3)
-        return plant
-
-    return make
+    return partial(in_the_air, settle_s=0.3)
 
 
 def rotor_angle(plant, joint="left_knee"):

@@ -15,7 +15,7 @@ from sim_backends.servo_firmware import (
     senses_supply,
 )
 from sim_backends.virtual.motors import Motor, MotorBank, servo_models
-from tests.sim_backends.conftest import hold, run
+from tests.sim_backends.conftest import run
 
 KNEE = 3
 K = 12.0 / (46 * 2 * np.pi / 60)
@@ -23,16 +23,11 @@ K = 12.0 / (46 * 2 * np.pi / 60)
 
 
 @pytest.fixture
-def desk(make_plant):
+def desk(in_the_air):
     """A plant in the air without gravity or sag, and the motor of its left knee."""
 
     def make(*overrides):
-        plant = make_plant("supply.resistance=0.0", *overrides)
-        plant.data.qpos[2] += 1.0
-        plant.model.opt.gravity[:] = 0.0
-        plant.set_support(True)
-        hold(plant)
-        run(plant, 0.2)
+        plant = in_the_air(*overrides)
         bank = MotorBank(plant, plant.servos, servo_models(plant.description))
         return plant, Motor(bank, KNEE)
 

@@ -71,13 +71,9 @@ def test_winding_and_case_settle_where_their_resistances_put_them():
 
 
 @pytest.fixture
-def desk(make_plant):
+def desk(in_the_air):
     def make(*overrides):
-        plant = make_plant("supply.resistance=0.0", *overrides)
-        plant.data.qpos[2] += 1.0
-        plant.set_support(True)
-        hold(plant)
-        run(plant, 0.2)
+        plant = in_the_air(*overrides, gravity=True)
         bank = MotorBank(plant, plant.servos, servo_models(plant.description))
         return plant, Motor(bank, KNEE)
 
