@@ -29,8 +29,8 @@ def draw_stabilizer(title: str, rows: list[Result], path: Path) -> None:
         _bars(below, rows, "disequilibrium_pct")
         below.set(title="Ticks in disequilibrium after foot-flat [%]")
         below.legend()
-        _bars(time, rows, "controller_ms")
-        time.set(title="Controller's time a tick, mean [ms]")
+        _bars(time, rows, "controller_steps")
+        time.set(title="Controller's time a tick, as multiples of one mj_step")
         figure.suptitle(title, x=0.01, ha="left", fontweight="bold")
         figure.savefig(path, dpi=90)
 
