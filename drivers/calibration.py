@@ -5,6 +5,11 @@ hardware refuses one whose robot, joints or feet do not match the description.
 """
 
 import datetime
+import hashlib
+import json
+import os
+import tempfile
+from contextlib import suppress
 from pathlib import Path
 from typing import Literal
 
@@ -30,7 +35,11 @@ class Provenance(Config):
     serial: str = ""
     """Serial number of the robot."""
     residual: float | None = None
-    """Root mean square error of the load-cell fit [N]."""
+    """Root mean square error of the fit: load cells [N], tilts of the IMU [rad]."""
+    software: str = ""
+    """Version of the program that measured, with its commit where there is one."""
+    parts: dict[str, str] = Field(default_factory=dict)
+    """Servos and boards that were measured: model, id and firmware, by joint or board."""
 
 
 class ServoCalibration(Config):
@@ -77,6 +86,56 @@ class RobotCalibration(Config):
     """Identified servos by joint; the data sheet's constants for joints not named."""
     feet: dict[Literal["left", "right"], FootCalibration] = Field(default_factory=dict)
     imu: ImuCalibration = ImuCalibration()
+    joint_ranges: dict[str, tuple[float, float]] = Field(default_factory=dict)
+    """How far cables and parts let a joint go, swept by hand [rad], by joint."""
+    measured: dict[Literal["joints", "imu", "feet", "lean"], Provenance] = Field(
+        default_factory=dict
+    )
+    """When and how each part was measured last."""
+    agreed: str = ""
+    """`identity` of the values with which leaning found joints, IMU and cells to agree."""
+
+    def identity(self) -> str:
+        """What distinguishes the values that a driver applies: 16 hexadecimal digits.
+
+        The same for the same values, whenever, however and in whatever order they were written;
+        another one after any change of an offset, range, servo, cell or mounting.
+        """
+        applied = self.model_dump(mode="json", exclude={"provenance", "measured", "agreed"})
+        for servo in applied["servos"].values():
+            for key in ("date", "method", "deviation", "residual"):
+                del servo[key]
+        text = json.dumps(applied, sort_keys=True, separators=(",", ":"))
+        return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+    def ranges(self, description: RobotDescription) -> Floats:
+        """Lowest and highest angle of every joint [rad], (2, n): the narrower of the robot file's
+        range and of what was swept."""
+        rows = [(joint.range, self.joint_ranges.get(joint.name, joint.range))
+                for joint in description.joints]  # fmt: skip
+        return np.array([[max(a[0], b[0]) for a, b in rows], [min(a[1], b[1]) for a, b in rows]])
+
+    def gaps(self, description: RobotDescription) -> tuple[str, ...]:
+        """What of a robot `stride calibrate` has not measured, in words; none for a calibration
+        that was not made by it, such as a virtual robot's."""
+        if not self.measured:
+            return ()
+        known = self.measured["joints"].parts if "joints" in self.measured else {}
+        gaps = [f"joint {name}" for name in description.joint_names if name not in known]
+        if description.imu is not None and "imu" not in self.measured:
+            gaps.append("imu")
+        gaps += [f"{side} foot" for side, foot in description.feet.items()
+                 if foot.board is not None and side not in self.feet]  # fmt: skip
+        return tuple(gaps)
+
+    def require_whole(self, description: RobotDescription, file: str = "calibration") -> None:
+        """Raises DescriptionError when it does not fit the robot, or was only begun."""
+        gaps = self.gaps(description)
+        if gaps:
+            raise DescriptionError(
+                file, "measured", f"not yet: {', '.join(gaps)} (stride calibrate)"
+            )
+        self.check_against(description, file)
 
     def offsets(self, joint_names: tuple[str, ...]) -> Floats:
         """Offsets in joint order [rad], shape (n,)."""
@@ -88,7 +147,11 @@ class RobotCalibration(Config):
             raise DescriptionError(
                 file, "robot", f"is for {self.robot!r}, the robot is {description.name!r}"
             )
-        for key, named in (("joint_offsets", self.joint_offsets), ("servos", self.servos)):
+        for key, named in (
+            ("joint_offsets", self.joint_offsets),
+            ("joint_ranges", self.joint_ranges),
+            ("servos", self.servos),
+        ):
             strangers = sorted(set(named) - set(description.joint_names))
             if strangers:
                 valid = ", ".join(description.joint_names)
@@ -106,9 +169,20 @@ def load_calibration(path: Path) -> RobotCalibration:
 
 
 def save_calibration(calibration: RobotCalibration, path: Path) -> None:
-    """Write a calibration file. Raises InputError when the file cannot be written."""
+    """Write a calibration file whole or not at all. Raises InputError."""
     text = yaml.safe_dump(calibration.model_dump(mode="json"), sort_keys=False)
     try:
-        path.write_text(text, encoding="utf-8")
+        number, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.resolve().parent)
+        try:
+            with os.fdopen(number, "w", encoding="utf-8") as file:
+                file.write(text)
+                file.flush()
+                os.fsync(file.fileno())
+            Path(name).chmod(0o644)
+            Path(name).replace(path)
+        except BaseException:
+            with suppress(OSError):
+                Path(name).unlink()
+            raise
     except OSError as error:
         raise InputError(f"{path}: cannot be written: {error.strerror}") from error

@@ -1,7 +1,6 @@
 """The backend of a robot with servo buses and sensor boards, real or virtual."""
 
 from collections.abc import Mapping
-from contextlib import suppress
 
 import numpy as np
 
@@ -21,9 +20,11 @@ from drivers.command_check import require_sound
 from drivers.dynamixel.bus_group import BusGroup
 from drivers.dynamixel.control_table import OperatingMode
 from drivers.dynamixel.port import Port
+from drivers.dynamixel.power import BusPower
 from drivers.dynamixel.states import ServoStates
 from drivers.guardian import Guardian
 from drivers.joint_converter import JointConverter
+from drivers.torque_off import send_off, switch_off
 from hil.description import RobotDescription
 from hil.errors import BackendError
 from hil.interface import (
@@ -83,7 +84,8 @@ class BusBackend:
         self._ports: dict[str, Port] = {}
         self._group = BusGroup((), clock)
         self._boards = BoardSensors({}, None)
-        self._guardian = Guardian(self._switch_off) if guarded else None
+        self._guarded = guarded
+        self._guardian = Guardian(lambda: switch_off(self._powers(), clock))
         self._goals: ServoGoals | None = None
         self._armed = False
         self._powered = False
@@ -97,15 +99,20 @@ class BusBackend:
         return self._goals
 
     def open(self) -> None:
-        """Connect and check; torque stays as it is found. Raises BackendError or InputError."""
+        """Connect and check; torque stays as it is found. Raises BackendError or InputError.
+
+        In real time it then listens for a second to what the gyro says of a body at rest.
+        """
         description = self._description
         require_bus_speeds(description)
         for budget in bus_budgets(description):
             budget.check(self._rate_hz)
-        self.calibration.check_against(description)
+        self.calibration.require_whole(description)
         try:
             self._open_ports()
             self._start()
+            if self._guarded and not self._boards.renew_bias(self.clock):
+                self.changes.append("the torso moved: its gyro keeps the calibrated bias")
         except BaseException:
             self._close_ports()
             raise
@@ -116,6 +123,7 @@ class BusBackend:
         self._require_open()
         frame = self._frame
         frame.time_ns = self.clock.now_ns()
+        self._guardian.beat()
         self._states.valid[:] = False
         self._group.send_reads()
         self._group.receive()
@@ -136,7 +144,7 @@ class BusBackend:
                 positions = _by_id(ids, goals.position[list(part.joints)])
                 p_gains = _by_id(ids, goals.p_gain[list(part.joints)])
                 part.power.prepare(positions, p_gains, self._currents(part, goals))
-            if self._guardian is not None:
+            if self._guarded:
                 self._guardian.start()
             for part in self._parts:
                 part.power.on()
@@ -169,18 +177,17 @@ class BusBackend:
         self._armed = False
         self._group.arm(False)
         if mode is StopMode.TORQUE_OFF:
-            self._send_off()
+            send_off(self._powers(), self.clock)
         verified = [self._stop_bus(part, mode) for part in self._parts]
         done = bool(verified) and all(verified)
         if mode is StopMode.TORQUE_OFF and done:
             self._powered = False
-            if self._guardian is not None:
-                self._guardian.close()
+            self._guardian.close()
         return done
 
     def guardian_lost(self) -> bool:
         """Whether torque is on and the guardian that should watch over it is gone."""
-        return self._powered and self._guardian is not None and not self._guardian.alive()
+        return self._powered and self._guarded and not self._guardian.alive()
 
     def close(self) -> None:
         """Torque off if `arm` switched it on, then release the ports. Safe to call twice."""
@@ -189,23 +196,15 @@ class BusBackend:
                 self.stop(StopMode.TORQUE_OFF)
         finally:
             self._close_ports()
+            if self._powered:
+                self._guardian.take_over()
 
     def statistics(self) -> dict[str, float | None]:
         """Counters for the report."""
         return self._statistics.report()
 
-    def _send_off(self) -> None:
-        """Every bus gets its frames before any is waited for."""
-        for part in self._parts:
-            with suppress(BackendError):
-                part.power.send_off()
-
-    def _switch_off(self) -> None:
-        """What the guardian does in its own process, on the same open ports."""
-        self._send_off()
-        for part in self._parts:
-            with suppress(BackendError):
-                part.power.off()
+    def _powers(self) -> list[BusPower]:
+        return [part.power for part in self._parts]
 
     def _spare_ns(self) -> int:
         """Time from when the goals leave to the next tick [ns].
@@ -267,6 +266,7 @@ class BusBackend:
 
     def _stop_bus(self, part: BusParts, mode: StopMode) -> bool:
         """Stop one bus; a bus that is lost must not keep the others from stopping."""
+        self._guardian.beat()
         try:
             if mode is StopMode.TORQUE_OFF:
                 return part.power.off()

@@ -23,7 +23,7 @@ from hil.safety.decision import Action
 from hil.safety.monitor import Situation
 from hil.safety.severity import Event, Severity
 from hil.safety.way_out import WayDown
-from hil.schedule import Operator
+from hil.schedule import Medium, Operator
 from hil.session import Session
 from hil.timing import TickSchedule, TickTiming, stopwatch_ns
 
@@ -77,16 +77,20 @@ class Cycle:
         self.rate_hz = rate_hz
         weight_n = body_weight(description) if description.actuation == "servo" else 0.0
         paced = not session.request.lockstep
-        self.supervisor = make_supervisor(description, rate_hz, weight_n, paced=paced)
+        self.supervisor = make_supervisor(
+            description, rate_hz, weight_n, paced=paced, feet=session.request.feet
+        )
         self.error: Exception | None = None
         """What the command source raised first; the robot sits down before it comes out."""
         self.schedule = TickSchedule(session.backend.clock, rate_hz)
         self._session = session
         self._sinks = sinks
         self._operator = Operator(session.request.schedules, description.defaults.speed)
-        self._limits = JointLimits(description)
+        goals = description.actuation == "servo"
+        self._limits = JointLimits(description, rate_hz if goals else None)
         self._way_down = WayDown(description, rate_hz)
         self._pushing = False
+        self._medium: Medium | None = None
         self._timing = TickTiming()
         self._truth: Truth | None = None
         self._hand_over_ns = 0
@@ -113,6 +117,7 @@ class Cycle:
         started = stopwatch_ns()
         self._push(time_s)
         self._throw(time_s)
+        self._immerse(time_s)
         frame = session.backend.read()
         read = stopwatch_ns()
         estimate = session.estimator.update(frame)
@@ -198,6 +203,16 @@ class Cycle:
         ball = self._operator.ball(time_s)
         if ball is not None:
             world.throw_ball(ball.mass, np.array(ball.velocity))
+
+    def _immerse(self, time_s: float) -> None:
+        """Set the liquid, where there is one, when it is not what it was."""
+        world = self._session.world
+        if world is None or not self._session.request.schedules.water:
+            return
+        medium = self._operator.medium(time_s)
+        if medium != self._medium:
+            world.set_medium(*medium)
+            self._medium = medium
 
     def _hand_over(
         self,

@@ -5,6 +5,7 @@ twin behaves (`plant`, `noise`), and how it walks (`walking`, validated by the c
 reads it). Units are SI; keys carry a unit suffix where SI would be unhandy (`_ms`, `_us`).
 """
 
+from collections.abc import Collection
 from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal, Self
@@ -12,6 +13,7 @@ from typing import Any, Literal, Self
 from pydantic import Field, PositiveFloat, PositiveInt, model_validator
 
 from hil.interface import SIDES
+from hil.joint_gains import GainSet, kind_of, set_for
 from hil.twin import Noise, Plant, Supply
 from hil.validation import Config
 
@@ -129,6 +131,9 @@ class Safety(Config):
     """Least supply at the servos [V]; none is not watched."""
     voltage_patience: PositiveFloat = 0.1
     """How long it may be below that [s]: a step's impact is shorter."""
+    goal_speed_max: PositiveFloat = 10.0
+    """How fast a position goal may move, in velocity limits of its joint: no glitch of a command
+    reaches a servo in one tick. The shipped gait asks for 8.6 of them at touch-down."""
 
 
 class Defaults(Config):
@@ -169,6 +174,8 @@ class RobotDescription(Config):
     sit: Sit | None = None
     safety: Safety = Safety()
     defaults: Defaults
+    gains: dict[int, GainSet] = {}
+    """Gain sets of a servo robot by control rate [Hz]; joints not named keep their own gains."""
     walking: dict[str, Any]
     file: str
     """Where the description was read from."""
@@ -187,6 +194,19 @@ class RobotDescription(Config):
     def start_position(self) -> tuple[float, ...]:
         """Start pose in joint order [rad]."""
         return tuple(self.start.joints.get(name, 0.0) for name in self.joint_names)
+
+    def at_rate(self, rate_hz: int) -> Self:
+        """This robot with the joint gains of a control rate [Hz], by `joint_gains.set_for`."""
+        if not self.gains:
+            return self
+        chosen = self.gains[set_for(self.gains, rate_hz)]
+        joints = tuple(
+            joint.model_copy(update=dict(zip(("stiffness", "damping"), pair, strict=True)))
+            if (pair := chosen.get(kind_of(joint.name)))
+            else joint
+            for joint in self.joints
+        )
+        return self.model_copy(update={"joints": joints})
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
@@ -219,7 +239,19 @@ class RobotDescription(Config):
             )
         if self.actuation == "servo" and self.supply is None:
             raise ValueError("a servo robot needs a supply")
+        self._check_gains(dict.fromkeys(kind_of(name) for name in names))
         return self
+
+    def _check_gains(self, kinds: Collection[str]) -> None:
+        if self.gains and self.actuation == "torque":
+            raise ValueError("gains: a torque robot has its gains under walking.gains")
+        for rate_hz, gains in self.gains.items():
+            strangers = sorted(set(gains) - set(kinds))
+            if strangers:
+                raise ValueError(
+                    f"gains.{rate_hz} names no joint of this robot: {', '.join(strangers)}; "
+                    f"valid: {', '.join(kinds)}"
+                )
 
     def _check_joint(self, joint: Joint) -> None:
         if not joint.range[0] < joint.range[1]:

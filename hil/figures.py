@@ -32,6 +32,10 @@ STYLE = {
 }
 
 
+OFF_THE_GROUND = (", stand", ", sit", ", hoisted")
+"""Ends of the names of rungs on which no distance is walked."""
+
+
 def draw_run(trace: Trace, description: RobotDescription, meta: dict[str, Any], path: Path) -> None:
     """Write the picture of a run to a file whose suffix says the format."""
     with mpl.rc_context(STYLE):
@@ -52,9 +56,12 @@ def draw_run(trace: Trace, description: RobotDescription, meta: dict[str, Any], 
 def title(trace: Trace, meta: dict[str, Any]) -> str:
     """What the picture shows, in one line."""
     figures = gait_figures(trace, meta["weight_n"])
+    what = f"{meta['robot']}, {meta['rung']}, {meta['rate_hz']} Hz, seed {meta['seed']}: "
+    duration = f"{trace.time_s[-1]:.0f} s"
+    if meta["rung"].endswith(OFF_THE_GROUND):
+        return f"{what}{figures['steps']} steps in {duration}"
     return (
-        f"{meta['robot']}, {meta['rung']}, {meta['rate_hz']} Hz, seed {meta['seed']}: "
-        f"{figures['steps']} steps, {figures['distance_m']:.2f} m in {trace.time_s[-1]:.0f} s, "
+        f"{what}{figures['steps']} steps, {figures['distance_m']:.2f} m in {duration}, "
         f"{figures['mean_speed_mps']:.3f} m/s (commanded {figures['target_speed_mps']:.3f})"
     )
 

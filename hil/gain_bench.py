@@ -96,6 +96,7 @@ def bench_robot(servo: str, mode: str, stiffness: float, damping: float) -> Robo
     return description.model_copy(
         update={
             "joints": joints,
+            "gains": {},
             "start": description.start.model_copy(update={"joints": knees}),
             "plant": description.plant.model_copy(update=plant),
             "supply": description.supply and description.supply.model_copy(update=supply),

@@ -17,7 +17,8 @@ from hil.servo import CENTRE_COUNTS, COUNTS_PER_RADIAN, MotorParameters, ServoGo
 from hil.session import Session
 from hil.shutdown import stop_and_close
 from hil.signals import StopSignals
-from hil.startup import RAMP_S, PoseRamp, default_command
+from hil.start_plan import RAMP_S
+from hil.startup import PoseRamp, default_command
 
 VOLTAGE_FILTER_S = 0.5
 """Time constant over which voltage readings are averaged."""

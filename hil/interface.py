@@ -112,13 +112,18 @@ class AppliedCommand:
     """[N·m]"""
     limit: Ints
     """`Limit` flags that acted, shape (n,)."""
+    goal: Floats
+    """What the actuator's own controller was told [rad]: the position with the shift that carries
+    torque and velocity; 0 of an actuator that takes torques."""
+    p_gain: Ints
+    """Its proportional gain, register value; 0 where it has none."""
 
     @classmethod
     def zeros(cls, n: int) -> "AppliedCommand":
         """An applied command of n joints with nothing sent."""
-        position, velocity, stiffness, damping, torque = np.zeros((5, n))
-        limit = np.zeros(n, dtype=np.int64)
-        return cls(position, velocity, stiffness, damping, torque, limit)
+        position, velocity, stiffness, damping, torque, goal = np.zeros((6, n))
+        limit, p_gain = np.zeros((2, n), dtype=np.int64)
+        return cls(position, velocity, stiffness, damping, torque, limit, goal, p_gain)
 
 
 @dataclass(slots=True)
@@ -259,6 +264,12 @@ class Reference:
     """Heading angle in the world [rad], left positive, not wrapped."""
     step_width: float = float("nan")
     """Lateral distance between the feet [m]; NaN for the robot's own."""
+    water_level: float = 0.0
+    """Level of the liquid that the robot is told to expect, above the floor [m]; 0 is dry land."""
+    liquid_density: float = 1000.0
+    """[kg/m³]"""
+    liquid_viscosity: float = 1.0
+    """Factor on the drag, 1 for water."""
 
 
 @dataclass(slots=True)
@@ -281,6 +292,8 @@ class WalkStatus:
     """World target of the swing ankle [m], shape (3,)."""
     heading: float = 0.0
     """Heading that the controller tracks in this tick [rad]."""
+    alteration: float = 0.0
+    """Sagittal distance that speed errors have added to the steps, Δ [m]."""
 
 
 class Clock(Protocol):
@@ -343,6 +356,10 @@ class World(Protocol):
 
     def throw_ball(self, mass: float, velocity: Floats) -> None:
         """Throw a ball [kg] at the trunk, to hit it at a world velocity [m/s], shape (3,)."""
+        ...
+
+    def set_medium(self, level: float, density: float, viscosity: float) -> None:
+        """A liquid up to a level above the floor [m], its density [kg/m³] and viscosity factor."""
         ...
 
     def set_support(self, supported: bool) -> None:

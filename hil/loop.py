@@ -1,9 +1,10 @@
 """The control loop: start-up, walking ticks, one way out.
 
 Whatever ends a run (its time, a fall, a lost servo, an exception of any part, a signal), the
-robot is stopped softly, its torque is switched off and read back, and its session is closed.
+robot sits down or lies already, its torque is switched off and read back, its session closed.
 """
 
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 
 from hil.cycle import Cycle, Sink
@@ -13,8 +14,9 @@ from hil.safety.decision import Action
 from hil.safety.severity import Event, Fault, Severity
 from hil.session import Session
 from hil.shutdown import stop_and_close
-from hil.signals import StopSignals
+from hil.signals import OperatorStop, StopSignals
 from hil.startup import stand_up
+from hil.stop_listener import StopListener
 from hil.timing import quiet_garbage_collector, real_time_priority, stopwatch_ns
 
 
@@ -39,18 +41,30 @@ class Outcome:
 class Loop:
     """Runs one session whose backend is open, and closes the session."""
 
-    def __init__(self, session: Session, sinks: tuple[Sink, ...], *, sits: bool = True) -> None:
-        """`sits`: sit down when the walk is over; a study may save the time."""
+    def __init__(
+        self,
+        session: Session,
+        sinks: tuple[Sink, ...],
+        *,
+        sits: bool = True,
+        listener: StopListener | None = None,
+    ) -> None:
+        """`sits`: sit down when the walk is over; a study may save the time. `listener`: where
+        the operator is heard beside signals.
+        """
         self.outcome = Outcome()
         self._session, self._sits = session, sits
-        self._told = self._at_rest = False
+        self._listener = listener
+        self._at_rest = False
         self._signals = StopSignals()
         rate_hz = session.request.rate_hz or session.description.defaults.rate_hz
         self._cycle = Cycle(session, rate_hz, sinks)
 
     def run(self) -> Outcome:
         """Walk for the requested time; raises what any part raised, once the robot is safe."""
-        with self._signals.caught():
+        listener = self._listener
+        hearing = nullcontext() if listener is None else listener.listening(self._signals.post)
+        with self._signals.caught(), hearing:
             try:
                 self._run_to_the_end()
             except BaseException as error:
@@ -113,12 +127,11 @@ class Loop:
             self._listen()
 
     def _listen(self) -> None:
-        """Hand a stop signal or another problem to the supervisor: the robot sits down first."""
+        """Hand what the operator asks for, or another problem, to the supervisor."""
         supervisor, watch = self._cycle.supervisor, self._session.watch
-        name = self._signals.first()
-        if name is not None and not self._told:
-            self._told = True
-            supervisor.note(Event("operator", name, Severity.SOFT_STOP))
+        while (request := self._signals.news()) is not None:
+            severity = Severity.TORQUE_OFF if request.now else Severity.SOFT_STOP
+            supervisor.note(Event("operator", request.name, severity))
         problem = watch() if watch is not None else None
         if problem is not None:
             supervisor.note(Event("program", problem, Severity.SOFT_STOP))
@@ -131,7 +144,8 @@ class Loop:
     def _note(self, error: BaseException) -> None:
         time_s = self._cycle.schedule.tick / self._cycle.rate_hz
         source = "program" if isinstance(error, Exception) else "operator"
-        fault = Fault(time_s, source, type(error).__name__, "torque_off")
+        name = str(error) if isinstance(error, OperatorStop) else type(error).__name__
+        fault = Fault(time_s, source, name, "torque_off")
         self.outcome.faults.append(fault)
 
     def _make_safe_after(self, error: BaseException) -> None:

@@ -5,6 +5,7 @@ from typing import Any, Protocol, Self
 
 import numpy as np
 
+from hil.start_plan import LONGEST_START_S, SETTLE_S, WAIT_S
 from hil.timing import stopwatch_ns
 
 LINE_EVERY_NS = 5_000_000_000
@@ -100,6 +101,8 @@ class Bar:
 
 def describe(row: np.void) -> str:
     """Time, speed and steps of a tick, in words."""
+    if -WAIT_S - SETTLE_S <= row["time_s"] < -LONGEST_START_S:
+        return "stands: lower it onto its feet"
     if row["time_s"] < 0:
         return "standing up"
     motion: Any = row["truth"] if "truth" in (row.dtype.names or ()) else row["estimate"]

@@ -45,7 +45,7 @@ def topics(n: int, *, truth: bool) -> dict[str, Any]:
         "command": JointCommand.zeros(n),
         "applied": AppliedCommand.zeros(n),
         "frame": SensorFrame.empty(n),
-        "estimate": _blank_estimate(n),
+        "estimate": blank_estimate(n),
         "reference": Reference(),
         "status": WalkStatus(),
         "safety": SafetyStatus(),
@@ -182,11 +182,12 @@ def _getter(columns: list[_Column]) -> Getter:
     return attrgetter(*(column.name for column in columns))
 
 
-def _blank_estimate(n: int) -> Estimate:
-    three, four = np.zeros(3), np.zeros(4)
+def blank_estimate(n: int) -> Estimate:
+    """An estimate of n joints in which every number is 0, no two arrays the same."""
+    base = (np.zeros(3), np.zeros(4), np.zeros(3), np.zeros(3))
+    joints, com = (np.zeros(n), np.zeros(n)), (np.zeros(3), np.zeros(3))
     loads, contact = (np.zeros((2, 4)), np.zeros(2)), np.zeros(2, dtype=np.bool_)
-    joints = (np.zeros(n), np.zeros(n))
-    return Estimate(0, three, four, three, three, *joints, three, three, *loads, contact, 0.0)
+    return Estimate(0, *base, *joints, *com, *loads, contact, 0.0)
 
 
 def _blank_truth(n: int) -> Truth:

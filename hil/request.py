@@ -6,7 +6,7 @@ from typing import Any, Literal, Self
 from pydantic import Field, PositiveFloat, PositiveInt, ValidationError, model_validator
 
 from hil.description import RobotDescription
-from hil.errors import InputError
+from hil.errors import DescriptionError, InputError
 from hil.fault_spec import FaultSpec, check_faults
 from hil.schedule import Schedules
 from hil.validation import Config
@@ -14,6 +14,9 @@ from hil.validation import Config
 BackendName = Literal["mujoco", "bus"]
 BusName = Literal["virtual", "real"]
 EstimatorName = Literal["sensors", "truth"]
+Activity = Literal["walk", "stand", "sit"]
+Feet = Literal["carry", "hang", "either"]
+"""Whether the feet carry a walking robot, must hang free, or may do either."""
 PdName = Literal["explicit", "implicit"]
 StabilizerSolverName = Literal["cma", "linear", "scan"]
 DEFAULT_SOLVER: StabilizerSolverName = "linear"
@@ -27,11 +30,16 @@ class RunRequest(Config):
 
     robot: str = "minibiped"
     """Name of a shipped robot or a YAML file."""
+    activity: Activity = "walk"
+    hoisted: bool = False
+    """Walk in the air: the robot hangs, and its steps end by the clock."""
     backend: BackendName | None = None
     bus: BusName | None = None
     """Only with the bus backend; where the command line is silent, real if live, else virtual."""
     live: bool = False
     """The operator says that real servos may move: the real bus, and nothing else."""
+    ports: dict[str, str] = {}
+    """Of a real robot, by the names of its buses and boards, instead of the robot file's."""
     rate_hz: PositiveInt | None = Field(default=None, le=2000)
     duration_s: PositiveFloat = 20.0
     """From the first walking tick [s]."""
@@ -75,6 +83,13 @@ class RunRequest(Config):
         """Whether time is the simulation's own: nothing then waits for the wall clock."""
         return not self.realtime and self.bus != "real"
 
+    @property
+    def feet(self) -> Feet:
+        """What the feet of this run do."""
+        if self.activity != "walk":
+            return "either"
+        return "hang" if self.hoisted else "carry"
+
     @model_validator(mode="before")
     @classmethod
     def _live_is_real(cls, values: Any) -> Any:
@@ -97,12 +112,30 @@ class RunRequest(Config):
             raise ValueError("--push needs a simulated robot")
         if self.bus == "real" and self.schedules.balls:
             raise ValueError("--ball needs a simulated robot")
+        if (self.schedules.density or self.schedules.viscosity) and not self.schedules.water:
+            raise ValueError("--density and --viscosity are a liquid's: say how high, --water H")
+        if self.bus == "real" and self.schedules.water:
+            raise ValueError("--water needs a simulated robot (docs/water.md)")
+        if self.ports and not self.live:
+            raise ValueError("--port and --ports are a real robot's: add --live to move its servos")
+        if self.hoisted:
+            self._check_hoisted()
         if self.faults and (self.bus == "real" or self.backend == "mujoco"):
             other = "a real one" if self.bus == "real" else "--backend mujoco, which has no wires"
             raise ValueError(f"--fault is for a virtual robot behind wires, not for {other}")
         if self.priority is not None and self.lockstep:
             raise ValueError("--priority needs --realtime or --live: lockstep has no deadlines")
         return self
+
+    def _check_hoisted(self) -> None:
+        """What a robot in the air cannot do."""
+        schedules = self.schedules
+        given = {"turns": "--turn", "pushes": "--push", "balls": "--ball"}
+        for key, option in given.items():
+            if getattr(schedules, key):
+                raise ValueError(f"{option} needs the ground: it does not go with --hoisted")
+        if self.estimator == "truth":
+            raise ValueError("--estimator truth knows of no floor under a hoisted robot")
 
     def resolved(self, description: RobotDescription) -> "RunRequest":
         """This request with the robot's defaults filled in. Raises InputError if they clash."""
@@ -122,6 +155,7 @@ class RunRequest(Config):
             )
         if self.stabilizer_solver is not None and not stabilizer:
             raise InputError("--stabilizer-solver needs --stabilizer")
+        self._check_rung(description)
         if self.realtime and backend == "mujoco":
             raise InputError("--realtime is for the bus backend; --backend mujoco has no deadlines")
         filled = {
@@ -135,3 +169,10 @@ class RunRequest(Config):
             "ankle_limit": defaults.ankle_limit if self.ankle_limit is None else self.ankle_limit,
         }
         return self.model_copy(update=filled)
+
+    def _check_rung(self, description: RobotDescription) -> None:
+        what = "--hoisted" if self.hoisted else self.activity
+        if (self.hoisted or self.activity != "walk") and description.actuation == "torque":
+            raise InputError(f"{what} is for robots with servos; {description.name} takes torques")
+        if self.activity == "sit" and description.sit is None:
+            raise DescriptionError(description.file, "sit", "is missing: no pose to sit in")

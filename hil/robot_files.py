@@ -69,7 +69,8 @@ def overridable(data: dict[str, Any]) -> dict[str, KeyPath]:
     paths: list[KeyPath] = [
         (section, key) for section, model in FIXED_SECTIONS.items() for key in model.model_fields
     ]
-    paths += _paths(data.get("walking", {}), ("walking",))
+    for section in ("gains", "walking"):
+        paths += _paths(data.get(section, {}), (section,))
     known = {_dotted(path): path for path in paths}
     ends = [(_dotted(path[start:]), path) for path in paths for start in range(1, len(path))]
     counts = Counter(end for end, _ in ends)

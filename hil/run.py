@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from hil.bringup.ladder import note_hoisted_walk
 from hil.cycle import Sink
 from hil.errors import StrideError
 from hil.figures import draw_run
@@ -14,6 +15,7 @@ from hil.report import make_report
 from hil.run_folder import make_meta, make_run_folder, write_json
 from hil.safety.severity import Fault
 from hil.session import Session
+from hil.stop_listener import StopListener
 from hil.trace import Trace, TraceSink
 
 
@@ -37,7 +39,7 @@ def run(session: Session, *, progress: bool = True) -> RunResult:
         if session.request.live:  # a virtual robot is new in every run: there it is no news
             sys.stderr.writelines(f"stride: {change}\n" for change in session.backend.changes)
         books = Books(session, progress=progress)
-        loop = Loop(session, books.sinks)
+        loop = Loop(session, books.sinks, listener=StopListener(books.folder))
     except BaseException:
         session.close()
         raise
@@ -47,7 +49,11 @@ def run(session: Session, *, progress: bool = True) -> RunResult:
         error.add_note(f"recorded in {books.folder}")
         books.close(loop.outcome)
         raise
-    return RunResult(books.folder, books.close(loop.outcome))
+    report = books.close(loop.outcome)
+    told = note_hoisted_walk(session, books.folder, report)
+    if told is not None:
+        sys.stderr.write(f"stride: {told}\n")
+    return RunResult(books.folder, report)
 
 
 def session_report(

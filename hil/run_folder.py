@@ -76,8 +76,12 @@ def rung(session: Session) -> str:
     """Which rung of the ladder a run stands on."""
     request = session.request
     if request.backend == "mujoco":
-        return "simulation"
-    return "live" if request.bus == "real" else "dry run"
+        body = "simulation"
+    else:
+        body = "live" if request.bus == "real" else "dry run"
+    if request.activity != "walk":
+        return f"{body}, {request.activity}"
+    return f"{body}, hoisted" if request.hoisted else body
 
 
 def write_json(path: Path, data: dict[str, Any]) -> None:

@@ -1,4 +1,4 @@
-"""What the operator asks for over time: speeds, turns and pushes, from the command line's texts.
+"""What the operator asks for over time, from the command line's texts: speeds, turns, water.
 
 T = 0 is the first walking tick. Values are linear between their points and constant after the
 last one; a schedule that says nothing of T = 0 starts there from the robot's default.
@@ -6,6 +6,7 @@ last one; a schedule that says nothing of T = 0 starts there from the robot's de
 
 import math
 import re
+from collections.abc import Sequence
 
 import numpy as np
 from pydantic import Field, NonNegativeFloat, PositiveFloat
@@ -16,6 +17,10 @@ from hil.validation import Config
 
 Point = tuple[NonNegativeFloat, float]
 """Time [s] and value."""
+LevelPoint = tuple[NonNegativeFloat, NonNegativeFloat]
+FactorPoint = tuple[NonNegativeFloat, PositiveFloat]
+Medium = tuple[float, float, float]
+"""Level above the floor [m], density [kg/m³] and viscosity factor of a liquid."""
 
 ROUNDING_S = 1e-9
 """A tick at the end of a push is after it, however the sum of two times was rounded."""
@@ -58,6 +63,12 @@ class Schedules(Config):
     """Lateral distance between the feet [m]; none for the robot's own."""
     pushes: tuple[Push, ...] = ()
     balls: tuple[Ball, ...] = ()
+    water: tuple[LevelPoint, ...] = ()
+    """Level of the liquid above the floor [m]; none is dry land."""
+    density: tuple[FactorPoint, ...] = ()
+    """[kg/m³]"""
+    viscosity: tuple[FactorPoint, ...] = ()
+    """Factor on the drag, 1 for water."""
 
 
 class Operator:
@@ -69,6 +80,16 @@ class Operator:
         self._turns = sorted(schedules.turns)
         self._pushes = schedules.pushes
         self._balls = sorted(schedules.balls, key=lambda ball: ball.start)
+        dry = Reference()
+        self._liquid = tuple(
+            _anchored(points, default)
+            for points, default in (
+                (schedules.water, dry.water_level),
+                (schedules.density, dry.liquid_density),
+                (schedules.viscosity, dry.liquid_viscosity),
+            )
+        )
+        self._wet = bool(schedules.water)
         width = schedules.step_width
         self._reference = Reference(step_width=math.nan if width is None else width)
         self._force = np.zeros(3)
@@ -79,7 +100,19 @@ class Operator:
         reference.speed = _interpolate(self._speed, time_s)
         reference.lateral = _interpolate(self._lateral, time_s)
         reference.heading = sum(angle for start, angle in self._turns if start <= time_s)
+        if self._wet:
+            medium = self.medium(time_s)
+            reference.water_level, reference.liquid_density, reference.liquid_viscosity = medium
         return reference
+
+    def medium(self, time_s: float) -> Medium:
+        """The liquid at a time."""
+        level, density, viscosity = self._liquid
+        return (
+            _interpolate(level, time_s),
+            _interpolate(density, time_s),
+            _interpolate(viscosity, time_s),
+        )
 
     def push(self, time_s: float) -> Floats:
         """Sum of the pushes that act at a time [N]. The array is reused by the next call."""
@@ -145,7 +178,7 @@ def _numbers(option: str, text: str, pattern: str, form: str) -> list[float]:
     return values
 
 
-def _anchored(points: tuple[Point, ...], default: float) -> list[Point]:
+def _anchored(points: Sequence[Point], default: float) -> list[Point]:
     ordered = sorted(points, key=lambda point: point[0])
     if not ordered or ordered[0][0] > 0:
         ordered.insert(0, (0.0, default))

@@ -1,4 +1,4 @@
-"""The way out of every run: a soft stop, torque off until it is read back, ports closed."""
+"""The end of every run: torque off until it is read back, ports closed."""
 
 from hil.errors import BackendError
 from hil.interface import Backend, StopMode
@@ -10,14 +10,11 @@ TORQUE_OFF_ATTEMPTS = 5
 def stop_and_close(session: Session) -> None:
     """Make a robot safe, whatever state it is in, and release what its session holds.
 
-    Each stage runs even if the one before it failed. Raises BackendError if torque off could not
-    be verified, else what a stage raised.
+    Torque goes off first: to hold the last goal before would keep the bus busy for nothing.
+    Raises BackendError if torque off could not be verified, else what closing raised.
     """
     try:
-        try:
-            session.backend.stop(StopMode.SOFT)
-        finally:
-            _torque_off(session.backend)
+        _torque_off(session.backend)
     finally:
         session.close()
 

@@ -3,7 +3,7 @@
 Units are SI; keys carry a unit suffix where SI would be unhandy (`_us`).
 """
 
-from typing import Literal, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, PositiveFloat, PositiveInt, model_validator
 
@@ -20,6 +20,12 @@ DeadCell = Literal[
     "right_foot:rear_right",
 ]
 """One load cell, by its foot and its corner."""
+
+NotNegative = Annotated[float, Field(ge=0)]
+ByJoint = float | dict[str, float]
+"""One value for every joint, or values of joints by name; the others keep theirs."""
+NotNegativeByJoint = NotNegative | dict[str, NotNegative]
+PositiveByJoint = PositiveFloat | dict[str, PositiveFloat]
 
 
 class Supply(Config):
@@ -68,8 +74,8 @@ class Draws(Config):
 class Plant(Config):
     """How the simulated twin differs from the nominal model.
 
-    Quantities that `draws` covers too: a number fixes them for every joint, none lets the seed
-    draw them, or keeps them nominal where nothing is drawn.
+    Quantities that `draws` covers too: a number fixes them for every joint, `{left_knee: 0.2}` for
+    the joints that it names; the seed draws the rest, or it stays nominal where nothing is drawn.
     """
 
     floor_friction: PositiveFloat
@@ -83,8 +89,13 @@ class Plant(Config):
     """Load cells that measure nothing."""
     latency_ticks: int = Field(default=0, ge=0)
     """Whole ticks by which goals act later than wires and computer explain."""
+    water_cell: PositiveFloat | None = None
+    """Size of the surface elements that feel a liquid's drag [m]; none: 1/47 of the leg, the 2 cm
+    of a human one."""
     ball: bool = False
     """Have a ball that can be thrown at the robot."""
+    hoist: bool = False
+    """Hang the robot up by its root body, its feet off the floor: nothing lets it down."""
     viscous_friction: float = Field(default=0.0, ge=0)
     """Of every servo's gear train [N·m·s/rad]."""
     stribeck_friction: float = Field(default=0.0, ge=0)
@@ -93,15 +104,15 @@ class Plant(Config):
     """Friction per torque on the gears, which fades too."""
     draws: Draws | None = None
     """What a seed draws; none is the nominal robot."""
-    armature: float | None = Field(default=None, ge=0)
+    armature: NotNegativeByJoint | None = None
     """Reflected rotor inertia of every servo [kg·m²]; nominal: the MJCF's."""
-    joint_friction: float | None = Field(default=None, ge=0)
+    joint_friction: NotNegativeByJoint | None = None
     """Dry friction of every servo [N·m]; nominal: the MJCF's."""
-    torque_constant_scale: PositiveFloat | None = None
+    torque_constant_scale: PositiveByJoint | None = None
     """True torque and back-EMF constant over the data sheet's; nominal: 1."""
-    joint_zero: float | None = None
+    joint_zero: ByJoint | None = None
     """Angle that the encoders show when the joint is at zero [rad]; nominal: 0."""
-    backlash: float | None = Field(default=None, ge=0)
+    backlash: NotNegativeByJoint | None = None
     """Full gap between gear train and horn [rad]; nominal: 0."""
     pitch_bias: float | None = None
     """Pitch of the IMU against the root body [rad]; nominal: 0."""

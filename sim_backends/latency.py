@@ -60,7 +60,8 @@ def board_age_ns(description: RobotDescription, board: Board) -> int:
     """
     wire = wire_time_ns(_FRAME_BYTES[board.kind], board.baud)
     wait = 500_000_000 // board.rate_hz + 500 * description.noise.board_jitter_us
-    held = 1000 * description.noise.imu_delay_us if board.kind == "imu" else 0
+    delay_us = description.noise.imu_delay_us if board.kind == "imu" else board.delay_us
+    held = 1000 * delay_us
     return max(0, held + wait + wire + _usb_ns(description) - read_time_ns(description))
 
 

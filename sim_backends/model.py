@@ -228,7 +228,7 @@ def _set_joints(model: mujoco.MjModel, description: RobotDescription, hidden: Hi
     ):
         nominal = values[outer]
         values[outer[outer != inner]] = 0.0
-        values[inner] = nominal if drawn is None else drawn
+        values[inner] = nominal if drawn is None else np.where(np.isnan(drawn), nominal, drawn)
     model.dof_damping[inner] += description.plant.viscous_friction
 
 

@@ -13,7 +13,6 @@ from sim_backends.draws import hidden_values
 from sim_backends.foot_loads import FootLoads, lowest_sole_point
 from sim_backends.model import (
     ACCELEROMETER,
-    SUPPORT,
     build_model,
     motor_joints,
     named,
@@ -24,8 +23,10 @@ from sim_backends.plant_servos import encoder_phase, make_servos
 from sim_backends.servo_figures import SERVO_KEYS
 from sim_backends.servo_physics import ServoPhysics
 from sim_backends.servo_protection import OVERLOAD
+from sim_backends.support import HOIST, Support
 from sim_backends.thrown_ball import ThrownBall
 from sim_backends.uneven_floor import UnevenFloor
+from sim_backends.water.immersion import Immersion
 
 DIVERGED_SPEED = 1e5
 """Norm of all velocities that no robot reaches [rad/s, m/s]."""
@@ -71,12 +72,7 @@ class Plant:
         self.model = build_model(description, rate_hz, motors, self.hidden)
         self.data = mujoco.MjData(self.model)
         self._find_root()
-        joints = [self._id(mujoco.mjtObj.mjOBJ_JOINT, name) for name in description.joint_names]
-        self._dofs = selection(self.model.jnt_dofadr[joints])
-        self._angles = selection(self.model.jnt_qposadr[joints])
-        rotors = motor_joints(self.model, description)
-        self._rotor_dofs = selection(self.model.jnt_dofadr[rotors])
-        self._rotor_angles = selection(self.model.jnt_qposadr[rotors])
+        self._find_joints()
         self._find_imu()
         self._floor: UnevenFloor | None = None
         if any(self.hidden.floor_height):
@@ -87,7 +83,11 @@ class Plant:
         self._ball: ThrownBall | None = None
         if description.plant.ball:
             self._ball = ThrownBall(self.model, self.data, description)
+        self.immersion = Immersion(description, self.model, self.data, self._root)
+        self._support = Support(self.model, self.data, self._position, self._orientation)
         self._set_start_pose(initial_velocity)
+        if description.plant.hoist:
+            self.hoist()
         n = len(description.joints)
         self._truth = Truth(0, *(np.zeros(k) for k in (3, 4, 3, 3, n, n, 3, 3, (2, 4), 2)))
         self.servos: ServoPhysics | None = None
@@ -125,6 +125,15 @@ class Plant:
         self._angular: Floats = self._qvel[v + 3 : v + 6]
         self._com = self.data.subtree_com[self._root]
         self._com_velocity = self.data.subtree_linvel[self._root]
+
+    def _find_joints(self) -> None:
+        description, model = self.description, self.model
+        joints = [self._id(mujoco.mjtObj.mjOBJ_JOINT, name) for name in description.joint_names]
+        self._dofs = selection(model.jnt_dofadr[joints])
+        self._angles = selection(model.jnt_qposadr[joints])
+        rotors = motor_joints(model, description)
+        self._rotor_dofs = selection(model.jnt_dofadr[rotors])
+        self._rotor_angles = selection(model.jnt_qposadr[rotors])
 
     def _find_imu(self) -> None:
         imu = self.description.imu
@@ -174,7 +183,7 @@ class Plant:
 
     def substep(self) -> None:
         """One substep of the physics. Raises BackendError when the simulation diverges."""
-        mujoco.mj_step(self.model, self.data)
+        self.immersion.step()
         self.substep_index += 1
         if not self._qvel.dot(self._qvel) < DIVERGED_SPEED**2:
             raise BackendError(
@@ -273,21 +282,18 @@ class Plant:
             raise BackendError(f"{self.description.name}: no ball to throw: set plant.ball=true")
         self._ball.throw(mass, velocity)
 
+    def set_medium(self, level: float, density: float, viscosity: float) -> None:
+        """As `Immersion.set_medium`: a liquid [m, kg/m³, factor]; level 0 is dry land."""
+        self.immersion.set_medium(level, density, viscosity)
+
     def set_support(self, supported: bool) -> None:
-        """Hold the root body where it is, or let it go."""
-        support = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_EQUALITY, SUPPORT)
-        if supported:
-            # data of a weld: anchor (3), position (3) and quaternion (4) held, torque scale.
-            self.model.eq_data[support, 3:6] = self._position
-            self.model.eq_data[support, 6:10] = self._orientation
-        self.data.eq_active[support] = supported
+        """Hold the root body where it is, or let it go; one that hangs stays where it is."""
+        self._support.set(supported)
 
     def rotor_dof(self, joint: int) -> int:
         """Degree of freedom of a joint's rotor: the joint's own where there is no backlash."""
         return int(np.arange(self.model.nv)[self._rotor_dofs][joint])
 
-    def hoist(self, height: float) -> None:
-        """Lift the root body [m] and hold it there: the feet hang free."""
-        self._position[2] += height
-        self.set_support(True)
-        mujoco.mj_forward(self.model, self.data)
+    def hoist(self, height: float = HOIST) -> None:
+        """Lift the root body [m] and hold it there for good: the feet hang free."""
+        self._support.hoist(height)

@@ -144,6 +144,11 @@ class ServoPhysics:
         self.enabled[servo] = on
         self._stale = True
 
+    def put_on_horn(self, servo: int, turned: float) -> None:
+        """Mount a servo whose joint is at zero when it shows so much beside its middle [rad]."""
+        self._zero[servo] += self._sign[servo] * turned * COUNTS_PER_RADIAN
+        self._stale = True
+
     def reboot(self, servo: int) -> None:
         """Torque off, and errors forgotten."""
         self.set_enabled(servo, False)

@@ -6,6 +6,7 @@ body's speed would come to rest upright over it.
 
 import math
 
+import numpy as np
 from pydantic import Field, PositiveFloat
 
 from controller.walking.heading_frame import Pair
@@ -36,6 +37,9 @@ class FootPlacementConfig(Config):
     """Outward offset of the landing point from the pendulum's [m]."""
     limit: PositiveFloat
     """Largest distance from the centre of mass on either axis, as a fraction of the leg."""
+    drag_lag: tuple[tuple[float, float], ...] = ()
+    """(level [m], lag [s³/m²]) of water: a swing foot that lags behind its target by lag·V³ is sent
+    so much further; linear between levels."""
     end_phase: float = Field(gt=0)
     """The foot is on its target from this phase on."""
 
@@ -53,6 +57,7 @@ class FootPlacement:
         self._config = config
         self._gravity = gravity
         self._limit = config.limit * leg_length
+        self._lag = tuple(zip(*(config.drag_lag or ((0.0, 0.0),)), strict=True))
 
     def distance(
         self,
@@ -75,6 +80,17 @@ class FootPlacement:
         x += alteration - offset_x * wanted[0]
         y += outward - offset_y * wanted[1]
         return min(max(x, -limit), limit), min(max(y, -limit), limit)
+
+    def lead(self, wanted: float, level: float, resistance: float) -> float:
+        """How much further the foot is sent than it is to land, because drag holds it back [m].
+
+        lag(H)·V³·ρμ/ρ_water for the commanded sagittal speed V [m/s]. Drag goes with V², but a
+        faster walk has longer steps too: the third power fits the placements that the integral of
+        the speed error finds. `level` is H [m], `resistance` the factor ρμ/ρ_water.
+        """
+        levels, lags = self._lag
+        lag = float(np.interp(level, levels, lags))
+        return lag * wanted**3 * resistance
 
     def share(self, phase: float, take_over: float | None) -> float:
         """Part s of the way from the start of the swing to the landing point.

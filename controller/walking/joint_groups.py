@@ -23,14 +23,6 @@ def group_name(joint: str) -> str:
     return joint
 
 
-def kind_of(group: str) -> str:
-    """Name of a group without its side: `left_hip` is a `hip`."""
-    for side in SIDES:
-        if group.startswith(f"{side}_"):
-            return group.removeprefix(f"{side}_")
-    return group
-
-
 class JointGroups:
     """Groups of a robot, in the order of their first hinge, and projection onto hinges.
 

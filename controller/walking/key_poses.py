@@ -41,13 +41,27 @@ def catmull_rom(knots: Knots, phases: Floats) -> Floats:
     return result
 
 
+def tabulated(curves: Sequence[Knots], end_phase: float) -> Floats:
+    """Values of curves at phases from 0 to `end_phase`, shape (SAMPLES, curves)."""
+    phases = np.linspace(0.0, end_phase, SAMPLES)
+    return np.stack([catmull_rom(knots, phases) for knots in curves], axis=1)
+
+
 class CurveTable:
     """Several curves tabulated over the phase, all evaluated by one interpolation."""
 
     def __init__(self, curves: Sequence[Knots], end_phase: float) -> None:
         """Tabulate curves from phase 0 to `end_phase`; they are held constant beyond."""
-        phases = np.linspace(0.0, end_phase, SAMPLES)
-        table = np.stack([catmull_rom(knots, phases) for knots in curves], axis=1)
+        self._fill(tabulated(curves, end_phase), end_phase)
+
+    @classmethod
+    def of(cls, table: Floats, end_phase: float) -> "CurveTable":
+        """Curves that `tabulated` has made, or a mix of such."""
+        curves = cls.__new__(cls)
+        curves._fill(table, end_phase)
+        return curves
+
+    def _fill(self, table: Floats, end_phase: float) -> None:
         self._table: list[list[float]] = table.tolist()
         self._scale = (SAMPLES - 1) / end_phase
 

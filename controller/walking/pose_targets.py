@@ -9,9 +9,9 @@ import numpy as np
 
 from controller.robot_model import RobotModel
 from controller.walking.gait import Gait
+from controller.walking.gait_styles import GaitStyles
 from controller.walking.hand_poses import HandPoses
 from controller.walking.joint_groups import JointGroups
-from controller.walking.key_poses import CurveTable
 from controller.walking.pose_tracking import PoseTracking
 from controller.walking.rotations import turn_about_y, turn_about_z, yaw_pitch_roll
 from controller.walking.swing_leg import SwingLeg
@@ -33,14 +33,15 @@ class PoseTargets:
         robot: RobotModel,
         groups: JointGroups,
         tracking: PoseTracking,
+        styles: GaitStyles,
     ) -> None:
         self._tracking = tracking
-        self._curves = CurveTable(config.key_poses.curves(), config.gait.max_phase)
+        self._styles = styles
         self._back = groups.index("back")
         self._hips, self._knees = groups.legs("hip"), groups.legs("knee")
         self._ankles = groups.legs("ankle")
         self._hands = (
-            HandPoses(config.hands, robot, groups, self._curves, config.gait.max_phase)
+            HandPoses(config.hands, robot, groups, styles.standard, config.gait.max_phase)
             if config.hands is not None
             else None
         )
@@ -52,7 +53,7 @@ class PoseTargets:
     def update(self, gait: Gait) -> float:
         """Set the targets of a phase; returns the drop of the swing ankle below its hip [m]."""
         tracking, sign = self._tracking, gait.stance_sign
-        angles = self._curves.at(gait.phase)
+        angles = self._styles.curves.at(gait.phase)
         root, yaw, pitch, roll, knee, stance_foot, swing_foot, drop = angles
         target, stance, swing = tracking.target, gait.stance, gait.swing
         turn_about_y(target[tracking.root], root)

@@ -10,10 +10,11 @@ from collections.abc import Mapping
 import numpy as np
 
 from controller.robot_model import RobotModel
-from controller.walking.joint_groups import JointGroups, kind_of
+from controller.walking.joint_groups import JointGroups
 from controller.walking.rotations import rotation_vectors
-from controller.walking.torque_config import GainSet, TorqueWalkingConfig
+from controller.walking.torque_config import TorqueWalkingConfig
 from hil.interface import Floats, Ints
+from hil.joint_gains import GainSet, kind_of
 
 
 class PoseTracking:

@@ -7,6 +7,7 @@ from controller.walking.command_ramp import CommandConfig
 from controller.walking.gait import GaitConfig
 from controller.walking.heading import HeadingConfig
 from controller.walking.height_trim import HeightTrimConfig
+from controller.walking.landing_trim import LandingTrimConfig
 from controller.walking.learned_load import LearnedLoadConfig
 from controller.walking.place_trim import PlaceTrimConfig
 from controller.walking.sole_trim import SoleTrimConfig
@@ -89,6 +90,8 @@ class TimingConfig(Config):
     """Longest step, as a multiple of the nominal period."""
     outside: PositiveFloat
     """A capture point that far beyond the outside of the ankle asks for landing now [m]."""
+    swing_speed: PositiveFloat
+    """No step is shortened below the time that its foot, at this mean speed, still needs [m/s]."""
 
 
 class WeightShiftConfig(Config):
@@ -119,6 +122,7 @@ class ServoWalkingConfig(Config):
     balance: BalanceConfig
     timing: TimingConfig
     place_trim: PlaceTrimConfig
+    landing_trim: LandingTrimConfig
     sole_trim: SoleTrimConfig
     height_trim: HeightTrimConfig
     alteration: AlterationConfig

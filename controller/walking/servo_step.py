@@ -11,6 +11,7 @@ from controller.walking.gait import Gait
 from controller.walking.heading import HeadingRamp
 from controller.walking.heading_frame import HeadingFrame, Pair
 from controller.walking.height_trim import HeightTrim
+from controller.walking.landing_trim import LandingTrim
 from controller.walking.pendulum_state import PendulumState
 from controller.walking.place_trim import PlaceTrim
 from controller.walking.rotations import heading_of
@@ -44,6 +45,7 @@ class ServoStep:
         self._alterations = Alteration(config.alteration), Alteration(config.lateral_alteration)
         self._mean_speeds = StepAverage(), StepAverage()
         self.trim = PlaceTrim(config.place_trim)
+        self.landing_trim = LandingTrim(config.landing_trim)
         self.sole_trim = SoleTrim(config.sole_trim)
         self.height_trim = HeightTrim(config.height_trim)
         self.frame = HeadingFrame()
@@ -54,6 +56,8 @@ class ServoStep:
         self._width = config.placement.step_width
         self._lift_off_yaw = 0.0
         self._begun = False
+        self._goal: Pair = (0.0, 0.0)
+        """Where the swing ankle should stand, from the stance ankle, heading frame [m]."""
         self.phase_rate = 1.0 / config.gait.period
         """dφ/dt [1/s]."""
         self.ankle: list[float] = [0.0, 0.0, 0.0]
@@ -75,8 +79,7 @@ class ServoStep:
         corners: list[float] = estimate.foot_force[gait.stance].tolist()
         loaded = gait.config.flat_corner_load * gait.weight
         gait.update_foot_flat(sum(force > loaded for force in corners))
-        self.ankle = self._model.ankles[gait.stance].tolist()
-        state.observe(self.ankle, self.frame, self._offset(gait.stance))
+        self._observe()
         for mean, speed in zip(self._mean_speeds, state.velocity, strict=True):
             mean.add(speed)
         sway = -gait.stance_sign * self._width
@@ -94,13 +97,26 @@ class ServoStep:
                 remaining,
                 gait.stance_sign,
             )
-            (x, y), (to_x, to_y) = self.trim.value[gait.stance], self.trim.value[gait.swing]
-            self.landing = self.frame.to_world((point[0] + x - to_x, point[1] + y - to_y))
+            x, to_x = self.trim.value[gait.stance], self.trim.value[gait.swing]
+            self._goal = (point[0] + x - to_x, point[1])
+            beside = self.landing_trim.value[gait.swing]
+            self.landing = self.frame.to_world((self._goal[0], self._goal[1] - beside))
 
     def swing_yaw(self) -> float:
         """Heading of the swing foot: it turns into the torso's during the swing [rad]."""
         share = min(self.gait.phase / self._config.swing.landing_phase, 1.0)
         return self._lift_off_yaw + share * (self.heading - self._lift_off_yaw)
+
+    def base_velocity(self, estimate: Estimate) -> tuple[float, float, float]:
+        """With which the torso moves over the stance foot, world axes [m/s]."""
+        u, v, w = estimate.base_linear_velocity.tolist()
+        return u, v, w
+
+    def _observe(self) -> None:
+        """Where the stance ankle is, and how the body moves about it."""
+        stance = self.gait.stance
+        self.ankle = self._model.ankles[stance].tolist()
+        self.state.observe(self.ankle, self.frame, self._offset(stance))
 
     def _advance(self, estimate: Estimate, reference: Reference) -> None:
         """Gait and commands one tick on."""
@@ -110,8 +126,11 @@ class ServoStep:
         self._width = self._config.placement.step_width if math.isnan(width) else width
         load = sum(estimate.foot_force[gait.swing].tolist())
         stance = gait.stance
+        phase = gait.phase
         ended = gait.advance(dt, load, self.phase_rate * gait.config.period)
         if ended:
+            foot, error = gait.stance, self._ahead(gait.stance)[1] - self._goal[1]
+            self.landing_trim.land(foot, error, phase)
             self.trim.end_step(stance, dt)
             self.sole_trim.end_step(stance)
             self.height_trim.land(
@@ -124,9 +143,15 @@ class ServoStep:
 
     def _offset(self, stance: int) -> Pair:
         """What the place of the com is corrected by on this stance foot [m]."""
-        x, y = self.trim.value[stance]
         ahead = self._config.balance.ahead
-        return self._alterations[0].value - x - ahead, self._alterations[1].value - y
+        x = self._alterations[0].value - self.trim.value[stance] - ahead
+        return x, self._alterations[1].value
+
+    def _ahead(self, foot: int) -> Pair:
+        """Ankle of a foot from that of the other one, heading frame [m]."""
+        ankles = self._model.ankles
+        x, y, _ = (ankles[foot] - ankles[1 - foot]).tolist()
+        return self.frame.to_heading((x, y))
 
     def _watch_fall(self, swing_load: float) -> None:
         """Let the trim learn while one foot alone carries the body."""
@@ -134,11 +159,10 @@ class ServoStep:
         settled = self.gait.time_in_step > trim.config.settle_time
         if cop is None or not settled or swing_load > UNLOADED * self.gait.weight:
             return
-        x, y = state.seen
-        place = (x - self._config.balance.ahead, y)
         p = self.balance.pressure
         self.sole_trim.add((cop[0] - p[0], cop[1] - p[1]))
-        trim.add(place, state.velocity, cop, state.pendulum.omega)
+        place = state.seen[0] - self._config.balance.ahead
+        trim.add(place, state.velocity[0], cop[0], state.pendulum.omega)
 
     def _end_step(self) -> None:
         """Adapt to the mean speeds: sagittal over the step, lateral over every stride."""
@@ -177,6 +201,15 @@ class ServoStep:
             gait.time_in_step,
             nominal,
         )
-        time = max(time, nominal / MAX_SPEEDUP)
+        time = max(time, nominal / MAX_SPEEDUP, min(self._travel_time(), nominal))
         self.phase_rate = left / time
         return time
+
+    def _travel_time(self) -> float:
+        """What the swing foot needs to its landing point, sagittal [s].
+
+        A sideways fall may ask for a step so short that the leg does not get there: the foot
+        lands behind its goal, the body is too fast on it, and the next step too long.
+        """
+        goal, _ = self.frame.to_heading(self.landing)
+        return abs(goal - self._ahead(self.gait.swing)[0]) / self._config.timing.swing_speed

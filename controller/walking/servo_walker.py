@@ -9,6 +9,7 @@ the measured place of the torso, and the virtual force acts as a centre of press
 import numpy as np
 
 from controller.robot_model import RobotModel
+from controller.walking.hoisted_step import HoistedStep
 from controller.walking.learned_load import LearnedLoad
 from controller.walking.leg_inertia import LegInertia
 from controller.walking.leg_kinematics import Vector
@@ -16,7 +17,7 @@ from controller.walking.leg_targets import INSTANTS, LegPlanner, LegTargets
 from controller.walking.rotations import heading_of
 from controller.walking.servo_config import servo_walking_config
 from controller.walking.servo_step import ServoStep
-from controller.walking.support_force import SupportForce
+from controller.walking.support_force import SoleForce, SupportForce
 from controller.walking.swing_governor import SwingGovernor
 from controller.walking.swing_trajectory import SwingTrajectory
 from controller.walking.weight_shift import WeightShift
@@ -40,8 +41,17 @@ class ServoWalker:
     """
 
     def __init__(
-        self, description: RobotDescription, rate_hz: int, ankle_limit: bool = True
+        self,
+        description: RobotDescription,
+        rate_hz: int,
+        ankle_limit: bool = True,
+        *,
+        hoisted: bool = False,
     ) -> None:
+        """`hoisted`: the robot hangs. It steps at once, its body is imagined (`HoistedStep`), and
+        no foot carries anything.
+        """
+        self._hoisted = hoisted
         self.status = WalkStatus()
         self.config = config = servo_walking_config(description)
         self._dt = 1.0 / rate_hz
@@ -52,7 +62,8 @@ class ServoWalker:
         self._planner = LegPlanner(model, config.hip_height)
         self._force = SupportForce(model)
         self._shift = WeightShift(config.weight_shift)
-        self._step = ServoStep(config, model, rate_hz, ankle_limit)
+        step = HoistedStep if hoisted else ServoStep
+        self._step = step(config, model, rate_hz, ankle_limit)
         self._swing = SwingTrajectory(config.swing)
         self._command = JointCommand.zeros(len(description.joints))
         self._command.stiffness[:] = [joint.stiffness for joint in description.joints]
@@ -66,17 +77,14 @@ class ServoWalker:
     def step(self, estimate: Estimate, reference: Reference) -> JointCommand:
         """The command of this tick. The returned object is reused by the next call."""
         self._model.set_state(estimate)
-        if not self._shift.finished:
+        if not (self._hoisted or self._shift.finished):
             return self._shift_weight()
         step = self._step
         step.update(estimate, reference)
         targets = self._walk(estimate)
         self._govern(targets, estimate)
         targets.position[:, ANKLES] += step.sole_trim.value
-        reactions = step.balance.ground_reaction(
-            step.state.place, step.gait, step.frame, self._planner.ankle_height
-        )
-        torque = self.config.balance.torque_gain * self._force.torques(reactions)
+        torque = self.config.balance.torque_gain * self._force.torques(self._reactions())
         swing = step.gait.swing
         torque[self._legs[swing]] += self._swing_torque(swing, targets)
         self._load.add(
@@ -88,6 +96,15 @@ class ServoWalker:
         )
         self._report()
         return self._fill(targets, torque)
+
+    def _reactions(self) -> list[SoleForce]:
+        """What the ground gives to the soles that carry."""
+        step = self._step
+        if self._hoisted:
+            return []
+        return step.balance.ground_reaction(
+            step.state.place, step.gait, step.frame, self._planner.ankle_height
+        )
 
     def _swing_torque(self, leg: int, targets: LegTargets) -> Floats:
         """What moves the swing leg beyond its weight [N·m], (6,)."""
@@ -112,7 +129,7 @@ class ServoWalker:
     def _walk(self, estimate: Estimate) -> LegTargets:
         step, planner, lead = self._step, self._planner, self._lead
         stance = step.gait.stance
-        u, v, w = estimate.base_linear_velocity.tolist()
+        u, v, w = step.base_velocity(estimate)
         base_x, base_y, _ = estimate.base_position.tolist()
         ankle = (step.ankle[0] - base_x, step.ankle[1] - base_y)
         yaw = heading_of(self._model.feet[stance])
@@ -159,7 +176,8 @@ class ServoWalker:
 
     def _swing_governor(self, description: RobotDescription) -> SwingGovernor:
         """The governor of either leg, in the start pose's inertia."""
-        inertia = self._inertia.at_rest(self._rest)
+        share = self.config.balance.inertia_gain  # what else there is, is learnt
+        inertia = [share * inertia for inertia in self._inertia.at_rest(self._rest)]
         joints = [description.joints[joint] for joint in self._legs[0].tolist()]
         damping = [joint.damping for joint in joints]
         stall = [joint.torque_limit for joint in joints]

@@ -9,10 +9,12 @@ from controller.walking.alteration import Alteration
 from controller.walking.command_ramp import CommandRamp
 from controller.walking.foot_placement import FootPlacement
 from controller.walking.gait import Gait
+from controller.walking.gait_styles import GaitStyles
 from controller.walking.heading import HeadingRamp
 from controller.walking.heading_frame import HeadingFrame, Pair
 from controller.walking.learned_velocity import LearnedVelocity
 from controller.walking.leg_crossing import LegCrossing
+from controller.walking.liquid import Liquid
 from controller.walking.recovery import Recovery
 from controller.walking.rotations import about_z, heading_of
 from controller.walking.step_average import StepAverage
@@ -29,10 +31,16 @@ class StepPlanner:
     """
 
     def __init__(
-        self, config: TorqueWalkingConfig, robot: RobotModel, dt: float, speed: float
+        self,
+        config: TorqueWalkingConfig,
+        robot: RobotModel,
+        dt: float,
+        speed: float,
+        styles: GaitStyles,
     ) -> None:
         sole_half_width = float(robot.corner_offsets[0, :, 1].max())
         self._robot = robot
+        self._styles = styles
         self._dt = dt
         self.gait = Gait(config.gait, robot.weight)
         self.heading_ramp = HeadingRamp(config.heading)
@@ -51,7 +59,7 @@ class StepPlanner:
         self._learned = LearnedVelocity(config.learned_velocity, math.ceil(longest) + 1)
         self._frame = HeadingFrame()
         self._angle = 0.0
-        self._swing_start: Pair = (0.0, 0.0)
+        self._swing_start = self._lift_off = (0.0, 0.0)
         self._first = True
         self._turned = self._turned_before = False
         self.new_step = True
@@ -64,12 +72,15 @@ class StepPlanner:
         """Of the centre of mass in the heading frame [m/s]."""
         self.wanted: Pair = (0.0, 0.0)
         """Speed for the virtual force: commanded plus learned deviation [m/s]."""
+        self.liquid = Liquid()
+        """What the robot is told to walk in."""
         self.foot_target = [0.0, 0.0, 0.0]
         """World target of the swing ankle [m]; the height is left to the caller."""
 
     def update(self, estimate: Estimate, loads: Pair, reference: Reference) -> None:
         """Move the plan on by one tick; `loads` are the vertical forces on the feet [N]."""
         gait = self.gait
+        self.liquid.expect(reference)
         command = self._command.update(self._dt, reference.speed, reference.lateral)
         stance = gait.stance
         ended = gait.advance(self._dt, loads[gait.swing])
@@ -80,6 +91,7 @@ class StepPlanner:
         self.new_step = ended or self._first
         self._first = False
         if self.new_step:
+            self._styles.choose(self.liquid.alike(command[0]), self.liquid.level)
             self._begin_step()
         self._latch_flat_foot(estimate.foot_force[gait.stance])
         self._observe_speed(command)
@@ -89,14 +101,15 @@ class StepPlanner:
         """Judge the step that `stance` carried, and adapt to it if it was an ordinary one.
 
         A turn rotates the frame in which speeds are measured, so the steps that turn, and the one
-        after them, teach nothing; nor do recovery steps (first author's code).
+        after them, teach nothing; nor do recovery steps (first author's code), until there were so
+        many that learning starts again.
         """
         averages = self._averages[0].finish(), self._averages[1].finish()
-        recovered, turned = self.recovery.active, self._turned
+        recovered, turned = self.recovery.frozen, self._turned
         if self.recovery.end_step(turned):
             self._learned.reset()
             self._offset.clear()
-        ordinary = not (self.recovery.active or recovered or turned or self._turned_before)
+        ordinary = not (self.recovery.frozen or recovered or turned or self._turned_before)
         self._turned_before, self._turned = turned, False
         if ordinary:
             self.alteration.end_step(averages[0], command[0])
@@ -132,7 +145,7 @@ class StepPlanner:
         """Remember where the swing foot leaves; the new stance foot has yet to lie flat."""
         robot = self._robot
         x, y, _ = (robot.ankles[self.gait.swing] - robot.com).tolist()
-        self._swing_start = self._frame.to_heading((x, y))
+        self._swing_start = self._lift_off = self._frame.to_heading((x, y))
         self.foot_heading = None
         self._take_over.begin_step(self.recovery.active)
 
@@ -151,16 +164,42 @@ class StepPlanner:
             self.velocity,
             height - float(robot.ankles[gait.stance][2]),
             command,
-            self.alteration.value,
+            self.alteration.value + self._lead(command[0]),
             self.coronal_alteration.value - gait.stance_sign * 0.5 * width,
         )
         share = self._placement.share(gait.phase, self._take_over.phase)
-        start = self._swing_start
+        start = self._follow_path() if self._take_over.phase is None else self._swing_start
         ahead = start[0] + share * (landing[0] - start[0])
         aside = start[1] + share * (landing[1] - start[1])
         aside += self._sidestep(start, landing, share)
         ahead_x, ahead_y = self._frame.to_world((ahead, aside))
         self.foot_target[:2] = x + ahead_x, y + ahead_y
+
+    def _follow_path(self) -> Pair:
+        """Place of the swing foot before the take-over, from the centre of mass [m].
+
+        Where it left the floor, or what the styles of the step say; the pendulum will begin where
+        it is then.
+        """
+        path = self._styles.path
+        if path is not None:
+            ahead, aside, said = path.at(self.gait.phase)
+            x, y, _ = (self._robot.hips[self.gait.swing] - self._robot.com).tolist()
+            hip = self._frame.to_heading((x, y))
+            left = self._lift_off
+            aside *= self.gait.stance_sign
+            self._swing_start = (
+                (1.0 - said) * left[0] + said * hip[0] + ahead,
+                (1.0 - said) * left[1] + said * hip[1] + aside,
+            )
+        return self._swing_start
+
+    def _lead(self, wanted: float) -> float:
+        """How much further the swing foot is sent in water [m]."""
+        liquid = self.liquid
+        if liquid.level <= 0.0:
+            return 0.0
+        return self._placement.lead(wanted, liquid.level, liquid.resistance)
 
     def _sidestep(self, start: Pair, landing: Pair, share: float) -> float:
         """Coronal offset that leads the swing foot round the stance foot [m]."""

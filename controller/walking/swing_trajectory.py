@@ -12,9 +12,9 @@ class SwingTrajectory:
     """A trapezoid of speed from lift-off to the landing point, a raised cosine in height.
 
     Horizontal: start + (target − start)·s(φ/φ_l) with a speed s' that rises for a share r of the
-    way's time, stays, and falls for r: peak 1/(1 − r) and acceleration 1/(r(1 − r)), 1.4 and 4.8
-    at r = 0.3, where minimum jerk has 1.9 and 5.8 and asks the hip for more than it has. The foot
-    rests above its landing point from φ_l on.
+    way's time, stays, and falls for r: peak 1/(1 − r) and acceleration 1/(r(1 − r)), 1.25 and
+    6.3 at r = 0.2, where minimum jerk has 1.9 and 5.8: it is speed that hips lack. The foot rests
+    above its landing point from φ_l on.
 
     Height, with α = 2πφ: H(1 − cos α + a(1 − cos 3α)/3)/(2 + 2a/3) up to φ = 1, whose speed
     sin α + a·sin 3α is flatter than a sine and so asks for a slower knee (a = 0.2: −20 %); after

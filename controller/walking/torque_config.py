@@ -5,6 +5,7 @@ from typing import Literal
 from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
 
 from controller.walking.alteration import AlterationConfig
+from controller.walking.combiner import KnotList, Law, StyleConfig
 from controller.walking.command_ramp import CommandConfig
 from controller.walking.foot_placement import FootPlacementConfig
 from controller.walking.gait import GaitConfig
@@ -16,11 +17,10 @@ from controller.walking.recovery import RecoveryConfig
 from controller.walking.stabilizer.config import StabilizerConfig
 from controller.walking.take_over import TakeOverConfig
 from controller.walking.velocity_offset import VelocityOffsetConfig
+from hil.joint_gains import GainSet, set_for
 from hil.validation import Config
 
 Vector3 = tuple[float, float, float]
-KnotList = tuple[tuple[float, float], ...]
-GainSet = dict[str, tuple[NonNegativeFloat, NonNegativeFloat]]
 
 
 class TrackingConfig(Config):
@@ -120,6 +120,8 @@ class TorqueWalkingConfig(Config):
     root_balance: RootBalanceConfig
     hip_gravity: Literal["implicit", "always", "never"]
     """With which PD the stance hip carries the weights above it (`hip_gravity`)."""
+    buoyancy_compensation: bool = True
+    """Take what a liquid carries out of gravity compensation."""
     ankle_limit: AnkleLimitConfig
     ankle_guards: bool = False
     """Guard the ankles by the rules of the first author's stored code (`ankle_guards`)."""
@@ -137,6 +139,11 @@ class TorqueWalkingConfig(Config):
     implicit_gain_rate: int
     """Gain set of implicit PD, whatever the rate, unless `gain_rate` is set."""
     key_poses: KeyPoses
+    """Of the standard controller."""
+    styles: tuple[StyleConfig, ...] = ()
+    """Simple controllers that differ from it (`combiner`); none: the standard one alone."""
+    style_law: Law = "square"
+    """How two neighbouring styles are mixed."""
     hands: HandPosesConfig | None = None
     """Where the hands are kept; none: the arms hold the start pose."""
     fallen_height: PositiveFloat
@@ -149,6 +156,16 @@ class TorqueWalkingConfig(Config):
             if set(gains) != wanted:
                 odd = ", ".join(sorted(set(gains) ^ wanted))
                 raise ValueError(f"gains.{rate}: joints missing or unknown: {odd}")
+        known = (*KeyPoses.model_fields, "swing_ahead", "swing_aside")
+        for style in self.styles:
+            strangers = sorted(set(style.poses) - set(known))
+            if strangers:
+                raise ValueError(
+                    f"styles: no such trajectory: {', '.join(strangers)}; valid: {', '.join(known)}"
+                )
+        places = [(style.speed, style.water) for style in self.styles]
+        if len(set(places)) < len(places):
+            raise ValueError("styles: two for the same speed and water level")
         chosen = (self.gain_rate, self.implicit_gain_rate, *self.explicit_gain_rates)
         for rate_key in chosen:
             if rate_key is not None and rate_key not in self.gains:
@@ -157,15 +174,9 @@ class TorqueWalkingConfig(Config):
         return self
 
     def gains_at(self, rate_hz: int, implicit: bool) -> GainSet:
-        """The gain set of a control rate [Hz].
-
-        Explicit PD takes, of the sets it may pick from, that of the highest rate which is not
-        above the control rate, or the lowest: a set that is stable at its own rate is so at
-        higher ones, but not at lower ones.
-        """
+        """The gain set of a control rate [Hz]; of explicit PD by `joint_gains.set_for`."""
         if self.gain_rate is not None:
             return self.gains[self.gain_rate]
         if implicit:
             return self.gains[self.implicit_gain_rate]
-        below = [rate for rate in self.explicit_gain_rates if rate <= rate_hz]
-        return self.gains[max(below, default=min(self.explicit_gain_rates))]
+        return self.gains[set_for(self.explicit_gain_rates, rate_hz)]

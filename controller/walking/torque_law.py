@@ -12,6 +12,7 @@ from controller.robot_model import RobotModel
 from controller.selection import selection
 from controller.walking.ankle_guards import AnkleGuards
 from controller.walking.ankle_limit import ground_slope, limited, sole_levers
+from controller.walking.buoyancy import BuoyancyCompensation
 from controller.walking.gravity_compensation import GravityCompensation
 from controller.walking.heading_frame import Pair
 from controller.walking.hip_gravity import HipGravity
@@ -50,6 +51,7 @@ class TorqueLaw:
         self._trunk = np.flatnonzero(trunk)
         self._trunk_rows = selection(self._trunk)
         self._gravity = GravityCompensation(robot, groups)
+        self._buoyancy: BuoyancyCompensation | None = None
         weighed = config.hip_gravity == "always" or (config.hip_gravity == "implicit" and implicit)
         self._hip_gravity = HipGravity(robot, groups) if weighed else None
         self._virtual = VirtualForce(config.virtual_force, robot, groups, groups.index("back"))
@@ -82,6 +84,8 @@ class TorqueLaw:
         self._balance_root(vectors, hips, shares, standing)
         torque = vectors[: len(self.groups)]
         torque += self._gravity.torques(gait.stance)
+        if plan.liquid.level > 0.0 and self._config.buoyancy_compensation:
+            torque += self._lift(plan)
         if self._hip_gravity is not None:
             load = loads[gait.swing]
             torque[hips[0]] += self._hip_gravity.torque(gait.stance, shares[0], load)
@@ -95,6 +99,12 @@ class TorqueLaw:
         if self._implicit is not None:
             joints = self._implicit.correct(joints, hips, shares, standing)
         return joints
+
+    def _lift(self, plan: StepPlanner) -> Floats:
+        """What the liquid carries of what gravity compensation asks for."""
+        if self._buoyancy is None:
+            self._buoyancy = BuoyancyCompensation(self._robot, self.groups)
+        return self._buoyancy.torques(plan.gait.stance, plan.liquid.level, plan.liquid.density)
 
     def _balance_root(
         self,

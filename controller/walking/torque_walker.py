@@ -7,6 +7,7 @@ balance at the hips, gravity compensation and velocity control by a virtual forc
 from typing import Literal
 
 from controller.robot_model import RobotModel
+from controller.walking.gait_styles import GaitStyles
 from controller.walking.pose_targets import PoseTargets
 from controller.walking.stabilizer.config import SolverName
 from controller.walking.stabilizer.stabilizer import Stabilizer
@@ -41,10 +42,11 @@ class TorqueWalker:
         dt = 1.0 / rate_hz
         self._fallen_height = config.fallen_height
         self._robot = robot = RobotModel(description)
-        self._plan = StepPlanner(config, robot, dt, speed)
+        styles = GaitStyles(config)
+        self._plan = StepPlanner(config, robot, dt, speed, styles)
         self._law = TorqueLaw(description, config, robot, rate_hz, pd, ankle_limit)
         self._targets = PoseTargets(
-            description, config, robot, self._law.groups, self._law.tracking
+            description, config, robot, self._law.groups, self._law.tracking, styles
         )
         links = LegLinks(robot.thigh_length, robot.shank_length, robot.knee_offset)
         self._swing_leg = SwingLeg(config.swing_leg, links, dt)
@@ -106,3 +108,4 @@ class TorqueWalker:
         status.foot_flat = gait.foot_flat
         status.foot_target[:] = self._plan.foot_target
         status.heading = self._plan.heading_ramp.heading
+        status.alteration = self._plan.alteration.value

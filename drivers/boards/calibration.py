@@ -25,6 +25,7 @@ _LEAST_NORM = 0.5
 """A shorter quaternion is no orientation, whatever the status says."""
 
 FourFloats = Annotated[tuple[float, ...], Field(min_length=4, max_length=4)]
+ThreeFloats = Annotated[tuple[float, ...], Field(min_length=3, max_length=3)]
 
 
 class FootCalibration(Config):
@@ -47,6 +48,8 @@ class ImuCalibration(Config):
 
     mounting: FourFloats = (1.0, 0.0, 0.0, 0.0)
     """Sensor axes to base axes (w, x, y, z)."""
+    gyro_bias: ThreeFloats = (0.0, 0.0, 0.0)
+    """What the gyro says at rest, in its own axes [rad/s]."""
 
     @model_validator(mode="after")
     def _unit_quaternion(self) -> "ImuCalibration":
@@ -77,7 +80,7 @@ class ImuConverter:
     """Applies an ImuCalibration: turns sensor axes into base axes.
 
     With the mounting M (sensor to base) and the board's orientation S (sensor to world), the
-    base's orientation is S·M⁻¹ and vectors are turned by M.
+    base's orientation is S·M⁻¹ and vectors are turned by M; the gyro's bias is taken off.
     """
 
     def __init__(self, calibration: ImuCalibration) -> None:
@@ -86,9 +89,15 @@ class ImuConverter:
         rotation = _matrix(mounting)
         self._all = np.zeros((10, 10))
         """Board counts to base values, the three parts of a frame at once."""
+        self._rotation = rotation
+        self.set_gyro_bias(np.array(calibration.gyro_bias))
         self._all[:4, :4] = ORIENTATION_UNIT * _right_product(mounting * [1, -1, -1, -1])
         self._all[4:7, 4:7] = GYRO_UNIT * rotation
         self._all[7:, 7:] = ACCELERATION_UNIT * rotation
+
+    def set_gyro_bias(self, bias: Floats) -> None:
+        """What the gyro says at rest from now on, in its own axes [rad/s], shape (3,)."""
+        self._gyro_bias: Floats = self._rotation @ bias
 
     def convert(
         self, frame: ImuFrame, orientation: Floats, gyro: Floats, acceleration: Floats
@@ -102,7 +111,7 @@ class ImuConverter:
             if norm > _LEAST_NORM:
                 np.divide(quaternion, norm, out=orientation)
         if status & _GYRO:
-            gyro[:] = values[4:7]
+            np.subtract(values[4:7], self._gyro_bias, out=gyro)
         if status & _ACCELEROMETER:
             acceleration[:] = values[7:]
 

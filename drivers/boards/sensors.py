@@ -6,8 +6,9 @@ from typing import Literal
 
 from drivers.boards.calibration import FootConverter, ImuConverter
 from drivers.boards.frames import ALL_CELLS, CELL_RAIL, FootFrame, ImuFrame, ImuStatus
+from drivers.boards.gyro_rest import LISTEN_NS, bias_at_rest
 from drivers.boards.reader import BoardReader
-from hil.interface import SIDES, SensorFrame
+from hil.interface import SIDES, Clock, SensorFrame
 
 Side = Literal["left", "right"]
 
@@ -71,6 +72,19 @@ class ImuSensor:
             )
         frame.imu_valid = latest.status & _IMU_ALL == _IMU_ALL and reader.is_fresh(now_ns)
 
+    def renew_bias(self, clock: Clock) -> bool:
+        """Listen to a robot at rest for its gyro's bias; False where it was not at rest."""
+        end_ns = clock.now_ns() + LISTEN_NS
+        frames: list[ImuFrame] = []
+        while (now_ns := clock.now_ns()) < end_ns:
+            if self.reader.poll(now_ns) and isinstance(self.reader.latest, ImuFrame):
+                frames.append(self.reader.latest)
+            clock.wait_readable([self.reader.port.stream], end_ns)
+        bias = bias_at_rest(frames)
+        if bias is not None:
+            self.converter.set_gyro_bias(bias)
+        return bias is not None
+
 
 class BoardSensors:
     """All boards of a robot."""
@@ -84,6 +98,10 @@ class BoardSensors:
         """The readers of all boards."""
         readers = [foot.reader for _, foot in self._feet]
         return readers if self._imu is None else [*readers, self._imu.reader]
+
+    def renew_bias(self, clock: Clock) -> bool:
+        """Listen for a second to the gyro of a robot whose torque is off; False if it moved."""
+        return self._imu is None or self._imu.renew_bias(clock)
 
     def read(self, now_ns: int, frame: SensorFrame) -> None:
         """Take what the boards have sent; never waits."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from drivers.assembly import bus_budgets
 from drivers.calibration import RobotCalibration
+from drivers.commissioning.calibration_inspection import look_at_calibration
 from drivers.commissioning.port_names import latency_timer_ms
 from drivers.commissioning.robot_bench import RobotBench
 from drivers.commissioning.roll_call import Present, roll_call
@@ -188,14 +189,7 @@ def _look_at_pose(
     images: Images,
     inspection: Inspection,
 ) -> None:
-    if calibration is None:
-        inspection.remark("calibration", "the robot file names none: joint zeros count as 0",
-                          "a walk of a real robot needs one")  # fmt: skip
-    else:
-        try:
-            calibration.check_against(bench.description)
-        except InputError as error:
-            inspection.expect(False, "calibration", str(error))
+    look_at_calibration(bench.description, calibration, inspection)
     offsets = calibration.joint_offsets if calibration else {}
     for joint in bench.description.joints:
         if joint.name not in images:

@@ -96,10 +96,15 @@ class ServoLine:
         length = end.end - begin.address
         request = encode_read(servo_id, begin.address, length)
         wait_ns = self._wait_ns(len(request) + reply_size([length], fast=False))
-        heard = self._ask(request, wait_ns, lambda got: got.id == servo_id)
-        for packet in heard.packets:
-            right = packet.id == servo_id and len(packet.data) == length
-            if right and not packet.error & ERROR_MASK:
+
+        def answers(packet: Packet) -> bool:
+            """A late answer to something else, such as a ping, is not this one's."""
+            refused = bool(packet.error & ERROR_MASK)
+            return packet.id == servo_id and (refused or len(packet.data) == length)
+
+        heard = self._ask(request, wait_ns, answers)
+        for packet in filter(answers, heard.packets):
+            if not packet.error & ERROR_MASK:
                 return packet.data, heard.garbled or len(heard.packets) > 1
         return None, heard.garbled or bool(heard.packets)
 

@@ -89,8 +89,7 @@ class GainMapping:
         self._sent = np.full(n, np.nan)
         self._offset = calibration.offsets(description.joint_names)
         self._counts_per_radian = self._motors.direction * COUNTS_PER_RADIAN
-        self._low = np.array([joint.range[0] for joint in description.joints])
-        self._high = np.array([joint.range[1] for joint in description.joints])
+        self._low, self._high = calibration.ranges(description)
         self._torque_limit = np.array([joint.torque_limit for joint in description.joints])
         self._gains_for: tuple[bytes, bytes, float] | None = None
         self._p_gain = np.zeros(n)
@@ -106,6 +105,7 @@ class GainMapping:
             pwm_limit=np.full(n, PWM_FULL, dtype=np.int64),
             current=None if (modes == ServoMode.POSITION).all() else self._rest_current.copy(),
         )
+        self._applied.goal, self._applied.p_gain = self._sent, self._goals.p_gain
         for offset, joint in zip(self._offset.tolist(), description.joints, strict=True):
             require_single_turn(joint, offset)
 

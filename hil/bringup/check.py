@@ -105,8 +105,8 @@ def write_bundle(check: Check, path: Path) -> None:
         with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as bundle:
             for file in (Path(description.file), description.model_path):
                 bundle.write(file, file.name)
-            if description.calibration is not None:
-                file = Path(description.file).parent / description.calibration
+            file = Path(description.file).parent / (description.calibration or "")
+            if description.calibration is not None and file.exists():
                 bundle.write(file, file.name)
             for name, content in _bundle_content(check).items():
                 bundle.writestr(name, json.dumps(content, indent=2) + "\n")

@@ -1,19 +1,24 @@
-"""`stride compare`: two runs side by side."""
+"""`stride compare`: two runs side by side, and why they differ."""
 
 import json
 import sys
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 from typer import Argument, Option
 
+if TYPE_CHECKING:
+    from hil.after.comparison import Comparison
+    from hil.compare import Figure, Walk
+
 EPILOG = """[bold]Example[/bold]
 
-stride walk --out dry
+stride walk --out before
 
-stride walk --backend mujoco --out mujoco
+stride walk --out after --set "plant.joint_friction={left_knee: 0.3}"
 
-stride compare mujoco dry
+stride compare before after
 """
 
 
@@ -24,38 +29,121 @@ def compare(
         Path | None, Option(help="Picture to write.", show_default="RUN_B/compare-<RUN_A>.png")
     ] = None,
     as_json: Annotated[
-        bool, Option("--json", help="Print the figures as JSON; the picture's path on stderr.")
+        bool, Option("--json", help="Print it all as JSON; the pictures' paths on stderr.")
     ] = False,
 ) -> None:
-    """Compare two walks: steps, speed, step time, joints over the stride, loads, timing.
+    """Compare two runs: walking figures, every joint, and the likely cause where one stands out.
 
-    Joints and loads are laid over each other by gait phase, after the first 5 s.
+    Joints are laid over each other by gait phase. Delay, gain, friction, rotor inertia, joint zero
+    and battery are measured in both recordings; what differs by more than two walks of one robot
+    do is named with its number (docs/after-a-run.md). A second picture, `-joints`, shows them.
     """
-    from hil.cli.table import number, print_rows
-    from hil.compare import compare_walks, read_walk
     from hil.errors import InputError
+
+    walks = _walks(first, second)
+    comparison, why_not = _joints(first, second)
+    if walks is None and comparison is None:
+        raise InputError(f"neither a walk to compare nor joints: {why_not}")
+    names = (first.resolve().name, second.resolve().name)
+    path = out or second / f"compare-{names[0]}.png"
+    pictures = _draw(walks, comparison, names, path)
+    if as_json:
+        data = _as_dict(walks, comparison, why_not)
+        sys.stdout.write(json.dumps(data, indent=2) + "\n")
+        sys.stderr.writelines(f"{picture}\n" for picture in pictures)
+        return
+    if walks is not None:
+        _print_figures(*walks)
+    if comparison is not None:
+        from hil.cli.joint_table import print_comparison
+
+        print_comparison(comparison, names)
+    else:
+        sys.stdout.write(f"no causes looked for: {why_not}\n")
+    sys.stdout.writelines(f"{picture}\n" for picture in pictures)
+
+
+def _walks(first: Path, second: Path) -> "tuple[Walk, Walk] | None":
+    """Both walks; none where a run is a hoisted or a standing one."""
+    from hil.compare import read_walk
+    from hil.errors import InputError
+    from hil.recording import read_recording
+
+    try:
+        return read_walk(first), read_walk(second)
+    except InputError:
+        for folder in (first, second):
+            read_recording(folder)  # raises again what is not about walking
+        return None
+
+
+def _joints(first: Path, second: Path) -> "tuple[Comparison | None, str | None]":
+    """The comparison joint by joint, or why there is none."""
+    from hil.after.comparison import compare_runs
+    from hil.after.recorded import read_run
+    from hil.errors import InputError
+
+    try:
+        return compare_runs(read_run(first), read_run(second)), None
+    except InputError as error:
+        return None, str(error)
+
+
+def _draw(
+    walks: "tuple[Walk, Walk] | None",
+    comparison: "Comparison | None",
+    names: tuple[str, str],
+    path: Path,
+) -> list[Path]:
+    """Write the pictures that there is something for."""
+    from hil.after.figures_joints import draw_joints
     from hil.figures_compare import draw_comparison
 
-    a, b = read_walk(first), read_walk(second)
-    figures = compare_walks(a, b)
-    path = out or second / f"compare-{a.name}.png"
+    pictures = []
+    if walks is not None:
+        a, b = walks
+        pictures.append(_written(path, lambda place: draw_comparison(a, b, place)))
+    if comparison is not None and comparison.curves.aligned != "mean":
+        both, beside = comparison, path.with_name(f"{path.stem}-joints{path.suffix}")
+        pictures.append(_written(beside, lambda place: draw_joints(both, names, place)))
+    return pictures
+
+
+def _written(path: Path, draw: Callable[[Path], None]) -> Path:
+    from hil.errors import InputError
+
     try:
-        draw_comparison(a, b, path)
+        draw(path)
     except (OSError, ValueError) as error:
         raise InputError(f"--out {path}: {error}") from error
-    if as_json:
-        data = {
-            figure.key: {
-                "a": figure.first,
-                "b": figure.second,
-                "difference": figure.difference,
-                "difference_pct": figure.difference_pct,
-            }
-            for figure in figures
+    return path
+
+
+def _as_dict(
+    walks: "tuple[Walk, Walk] | None", comparison: "Comparison | None", why_not: str | None
+) -> dict[str, Any]:
+    from hil.compare import compare_walks
+
+    figures: list[Figure] = [] if walks is None else compare_walks(*walks)
+    data: dict[str, Any] = {
+        figure.key: {
+            "a": figure.first,
+            "b": figure.second,
+            "difference": figure.difference,
+            "difference_pct": figure.difference_pct,
         }
-        sys.stdout.write(json.dumps(data, indent=2) + "\n")
-        sys.stderr.write(f"{path}\n")
-        return
+        for figure in figures
+    }
+    return data | {
+        "comparison": None if comparison is None else comparison.as_dict(),
+        "no_causes_because": why_not,
+    }
+
+
+def _print_figures(a: "Walk", b: "Walk") -> None:
+    from hil.cli.table import number, print_rows
+    from hil.compare import compare_walks
+
     rows = [
         (
             figure.key,
@@ -64,7 +152,6 @@ def compare(
             number(figure.difference),
             number(figure.difference_pct),
         )
-        for figure in figures
+        for figure in compare_walks(a, b)
     ]
     print_rows(f"A: {a.label}, B: {b.label}", ("", "A", "B", "B − A", "%"), rows)
-    sys.stdout.write(f"{path}\n")

@@ -9,6 +9,7 @@ from typer.core import TyperGroup
 from hil import __version__
 from hil.cli import (
     bench,
+    calibrate,
     check,
     compare,
     emulate,
@@ -21,10 +22,15 @@ from hil.cli import (
     relax,
     scan,
     setup,
+    sit,
+    stand,
+    stop,
     study,
+    twin,
     walk,
 )
 from hil.errors import StrideError
+from hil.signals import OperatorStop
 
 INTERRUPTED = 130
 
@@ -42,6 +48,9 @@ class StrideGroup(TyperGroup):
         except KeyboardInterrupt as error:
             _complain("; ".join(["interrupted", *getattr(error, "__notes__", [])]))
             raise typer.Exit(INTERRUPTED) from error
+        except OperatorStop as error:
+            _complain("; ".join([f"stopped by {error}", *getattr(error, "__notes__", [])]))
+            raise typer.Exit(error.exit_code) from error
 
 
 app = typer.Typer(
@@ -53,13 +62,18 @@ app = typer.Typer(
     epilog="Start with: [bold]stride walk[/bold]. It needs no hardware.",
 )
 app.command(epilog=walk.EPILOG)(walk.walk)
+app.command(epilog=stand.EPILOG)(stand.stand)
+app.command(epilog=sit.EPILOG)(sit.sit)
+app.command(epilog=stop.EPILOG)(stop.stop)
 app.command(epilog=emulate.EPILOG)(emulate.emulate)
 app.command(epilog=scan.EPILOG)(scan.scan)
 app.command(epilog=jog.EPILOG)(jog.jog)
 app.command(epilog=setup.EPILOG)(setup.setup)
 app.command(epilog=check.EPILOG)(check.check)
+app.add_typer(calibrate.app)
 app.command(epilog=monitor.EPILOG)(monitor.monitor)
 app.command(epilog=relax.EPILOG)(relax.relax)
+app.command(epilog=twin.EPILOG)(twin.twin)
 app.command(epilog=compare.EPILOG)(compare.compare)
 app.command(epilog=plot.EPILOG)(plot.plot)
 app.command(epilog=export.EPILOG)(export.export)

@@ -13,9 +13,13 @@ Backend = Annotated[
     Option(help="What stands behind the interface; the robot's own choice if not given."),
 ]
 Bus = Annotated[BusName | None, Option(help="With the bus backend: virtual servos, or real ones.")]
-Live = Annotated[bool, Option("--live", help="Walk the real robot: its servos move.")]
+Live = Annotated[bool, Option("--live", help="The real robot: its servos move.")]
+Hoisted = Annotated[
+    bool, Option("--hoisted", help="Walk in the air: it hangs, and steps by the clock.")
+]
 Rate = Annotated[int | None, Option(help="Control rate in Hz.", show_default="robot's")]
 Duration = Annotated[float, Option(help="Walking time in s.")]
+StandTime = Annotated[float, Option("--duration", help="Standing time in s.")]
 Seed = Annotated[int, Option(help="Draws sensor noise, biases and latency jitter.")]
 Realtime = Annotated[
     bool, Option("--realtime", help="Pace a simulated robot by the clock on the wall.")
@@ -45,6 +49,18 @@ Push = Annotated[
 Ball = Annotated[
     list[str] | None,
     Option(metavar="KG,VX,VY,VZ@T", help="Ball thrown at the trunk, m/s at impact; repeatable."),
+]
+Water = Annotated[
+    list[str] | None,
+    Option(metavar="H[@T]", help="Level of a liquid in m above the floor; repeatable as --speed."),
+]
+Density = Annotated[
+    list[str] | None,
+    Option(metavar="R[@T]", help="Its density in kg/m³; repeatable.", show_default="1000"),
+]
+Viscosity = Annotated[
+    list[str] | None,
+    Option(metavar="MU[@T]", help="Factor on its drag; repeatable.", show_default="1"),
 ]
 Faults = Annotated[
     list[str] | None,

@@ -5,8 +5,12 @@ from typing import Annotated
 from typer import Option, Typer
 
 from hil.cli import options, study_options
+from hil.cli.study_ceiling import ceiling
 from hil.cli.study_conduct import checked, conduct, resolved_request
+from hil.cli.study_gains import gains
+from hil.cli.study_gait import gait
 from hil.cli.study_robustness import robustness
+from hil.cli.study_water import water
 
 EPILOG = """[bold]Examples[/bold]
 
@@ -29,6 +33,10 @@ app = Typer(
     help="Many walks in parallel, one table: CSV, figure, and every case that is done is kept.",
 )
 app.command()(robustness)
+app.command()(gains)
+app.command()(ceiling)
+app.command()(gait)
+app.command()(water)
 
 
 @app.command()

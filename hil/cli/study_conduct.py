@@ -3,13 +3,15 @@
 import json
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from hil.errors import InputError
 from hil.request import RunRequest
 
 if TYPE_CHECKING:
     from hil.studies.study import Study
+
+StudyT = TypeVar("StudyT", bound="Study")
 
 
 def resolved_request(
@@ -24,7 +26,7 @@ def resolved_request(
     return request.resolved(load_robot(robot, changes))
 
 
-def checked(kind: "type[Study]", request: RunRequest, **settings: Any) -> "Study":
+def checked(kind: "type[StudyT]", request: RunRequest, **settings: Any) -> "StudyT":
     """A study from a user's settings; raises InputError naming the setting."""
     from pydantic import ValidationError
 
@@ -39,14 +41,21 @@ def checked(kind: "type[Study]", request: RunRequest, **settings: Any) -> "Study
         ) from error
 
 
-def conduct(study: "Study", out: Path | None, jobs: int | None, *, as_json: bool) -> None:
+def conduct(
+    study: "Study",
+    out: Path | None,
+    jobs: int | None,
+    *,
+    as_json: bool,
+    scheduler: str | None = None,
+) -> None:
     """Run a study and print what it found, its folder last."""
     from rich.markup import escape
 
     from hil.cli.table import print_rows
     from hil.studies.run import run_study
 
-    run = run_study(study, out, jobs)
+    run = run_study(study, out, jobs, scheduler)
     if as_json:
         data = {"study": study.name, "settings": study.model_dump(mode="json"),
                 "rows": run.result.rows}  # fmt: skip

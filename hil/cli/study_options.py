@@ -19,6 +19,10 @@ Steps = Annotated[
     int | None, Option(help="Length of each walk in steps.", show_default="--duration", min=10)
 ]
 Jobs = Annotated[int | None, Option(help="Worker processes.", show_default="one a CPU")]
+Scheduler = Annotated[
+    str | None,
+    Option(metavar="tcp://HOST:PORT", help="Run on the workers of this Dask scheduler instead."),
+]
 Out = Annotated[
     Path | None,
     Option(help="The study's folder; an interrupted study goes on there.",

@@ -12,7 +12,7 @@ PAGE_COLUMNS = 160
 
 MAIN_FIGURES = (
     ("fell", "fell", ""),
-    ("walked", "duration_s", "s"),
+    ("duration", "duration_s", "s"),
     ("steps", "steps", ""),
     ("distance", "distance_m", "m"),
     ("mean speed", "mean_speed_mps", "m/s"),
@@ -56,14 +56,30 @@ def print_rows(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]]) 
     _console().print(table)
 
 
-def print_report(report: dict[str, Any]) -> None:
-    """The figures of a run that are known, and what went wrong."""
+GROUND_FIGURES = (
+    "distance_m",
+    "mean_speed_mps",
+    "target_speed_mps",
+    "speed_error_pct",
+    "heading_error_deg",
+    "disequilibrium_pct",
+)
+"""What says nothing of a robot that does not walk on the ground."""
+
+
+def print_report(report: dict[str, Any], rung: str = "") -> None:
+    """The figures of a run that are known, and what went wrong.
+
+    `rung`: what the robot did instead of walking on the ground.
+    """
     where = report["backend"] if report["bus"] is None else f"{report['bus']} bus"
-    title = f"{report['robot']}, {where}, {report['rate_hz']} Hz, seed {report['seed']}"
+    hidden = GROUND_FIGURES if rung else ()
+    what = f"{report['robot']}, {rung}" if rung else report["robot"]
+    title = f"{what}, {where}, {report['rate_hz']} Hz, seed {report['seed']}"
     rows = [
         (name, number(report[key]), unit)
         for name, key, unit in MAIN_FIGURES
-        if report[key] is not None
+        if report[key] is not None and key not in hidden
     ]
     print_rows(title, ("", f"motion from {report['motion_source']}", ""), rows)
     for fault in report["faults"]:

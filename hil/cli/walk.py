@@ -1,13 +1,10 @@
 """`stride walk`: one walk, from the command line to its run folder."""
 
-import json
-import sys
 from typing import Any
 
-from typer import Exit
-
 from hil.cli import options
-from hil.cli.table import print_report
+from hil.cli.bringup_options import Ports, PortsFile, Yes
+from hil.cli.rungs import conduct, live_ports
 from hil.fault_spec import gather_faults
 from hil.request import RunRequest
 from hil.schedule import parse_ball, parse_point, parse_push, parse_turn
@@ -24,7 +21,13 @@ stride walk --fault servo:left_knee:silent@5+0.01    a servo silent for 10 ms (d
 
 stride walk --realtime --duration 30              in real time, on pseudo-terminals
 
+stride walk --hoisted                             in the air: the rung before the ground
+
+stride walk my_robot.yaml --live --hoisted        a real robot, hung up; docs/bring-up.md
+
 stride walk human --rate 300 --duration 60        the seeds' character, on MuJoCo
+
+stride walk human --water 0 --water 0.5@10        water that rises to the knees in 10 s
 """
 
 
@@ -33,6 +36,10 @@ def walk(
     backend: options.Backend = None,
     bus: options.Bus = None,
     live: options.Live = False,
+    hoisted: options.Hoisted = False,
+    port: Ports = None,
+    ports: PortsFile = None,
+    yes: Yes = False,
     rate: options.Rate = None,
     duration: options.Duration = 20.0,
     seed: options.Seed = 0,
@@ -44,6 +51,9 @@ def walk(
     step_width: options.StepWidth = None,
     push: options.Push = None,
     ball: options.Ball = None,
+    water: options.Water = None,
+    density: options.Density = None,
+    viscosity: options.Viscosity = None,
     fault: options.Faults = None,
     fault_plan: options.FaultPlan = None,
     estimator: options.Estimator = None,
@@ -58,31 +68,24 @@ def walk(
 ) -> None:
     """Walk, and leave a run folder: meta.json, session.mcap, report.json, picture.png.
 
-    T = 0 is the first walking tick. Exit code 0: walked to the end; 1: fell or had to stop;
-    2: bad input, nothing was started.
+    T = 0 is the first walking tick. A real robot is asked for with --live: the command asks before
+    torque goes on, and walks on the ground only after a passed hoisted walk with this calibration.
+    Exit code 0: walked to the end; 1: fell or had to stop; 2: bad input, nothing was started.
     """
+    changes = tuple(overrides or ())
+    body = {"robot": robot, "backend": backend, "bus": bus, "live": live, "hoisted": hoisted}
+    clock = {"rate_hz": rate, "duration_s": duration, "realtime": realtime, "priority": priority}
+    law = {"estimator": estimator, "pd": pd, "ankle_limit": ankle_limit, "seed": seed}
+    steady = {"stabilizer": stabilizer, "stabilizer_solver": stabilizer_solver}
+    files = {"overrides": changes, "out": out, "report": report}
+    course = _schedules(speed, lateral, turn, push, ball) | _liquid(water, density, viscosity)
     request = RunRequest.checked(
-        robot=robot,
-        backend=backend,
-        bus=bus,
-        live=live,
-        rate_hz=rate,
-        duration_s=duration,
-        seed=seed,
-        realtime=realtime,
-        priority=priority,
-        schedules=_schedules(speed, lateral, turn, push, ball) | {"step_width": step_width},
+        **(body | clock | law | steady | files),
+        ports=live_ports(robot, changes, port, ports),
+        schedules=course | {"step_width": step_width},
         faults=gather_faults(fault or (), fault_plan),
-        estimator=estimator,
-        pd=pd,
-        stabilizer=stabilizer,
-        stabilizer_solver=stabilizer_solver,
-        ankle_limit=ankle_limit,
-        overrides=tuple(overrides or ()),
-        out=out,
-        report=report,
     )
-    _run(request, as_json=as_json)
+    conduct(request, yes=yes, as_json=as_json)
 
 
 def _schedules(
@@ -101,17 +104,11 @@ def _schedules(
     }
 
 
-def _run(request: RunRequest, *, as_json: bool) -> None:
-    """Parts that take long to import come last: a wrong option is answered at once."""
-    from hil.compose import build
-    from hil.run import run
-
-    result = run(build(request))
-    if as_json:
-        sys.stdout.write(json.dumps(result.report, indent=2) + "\n")
-        sys.stderr.write(f"{result.folder}\n")
-    else:
-        print_report(result.report)
-        sys.stdout.write(f"{result.folder}\n")
-    if any(fault["reaction"] != "none" for fault in result.report["faults"]):
-        raise Exit(1)
+def _liquid(
+    water: list[str] | None, density: list[str] | None, viscosity: list[str] | None
+) -> dict[str, Any]:
+    return {
+        "water": tuple(parse_point("--water", text) for text in water or ()),
+        "density": tuple(parse_point("--density", text) for text in density or ()),
+        "viscosity": tuple(parse_point("--viscosity", text) for text in viscosity or ()),
+    }

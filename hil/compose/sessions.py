@@ -3,44 +3,56 @@
 from collections.abc import Mapping
 from contextlib import ExitStack
 from datetime import UTC, datetime
-from pathlib import Path
 from typing import Any
 
+from controller.estimation.hanging import HangingEstimator
 from controller.estimation.sensors import SensorEstimator
 from controller.estimation.truth import TruthEstimator
+from controller.holding import PoseHolder
 from controller.walking.servo_walker import ServoWalker
 from controller.walking.torque_walker import TorqueWalker
 from drivers.calibration import RobotCalibration, load_calibration
 from drivers.dynamixel.gain_mapping import GainMapping
 from drivers.motor_constants import motor_parameters
 from drivers.robot_backend import BusBackend
+from hil.bringup.ladder import calibration_file, on_the_ground, require_hoisted_walk
 from hil.clock import MonotonicClock
 from hil.description import RobotDescription
 from hil.errors import DescriptionError, InputError
-from hil.interface import Controller, Estimator, World
+from hil.interface import Controller, Estimator, WalkStatus, World
 from hil.request import DEFAULT_SOLVER, RunRequest
 from hil.robot_files import load_robot
 from hil.servo import MotorParameters
 from hil.session import Session
+from hil.start_plan import sit_position
 from hil.validation import validate
 from sim_backends.draws import hidden_values
 from sim_backends.mujoco_backend import MujocoBackend
 from sim_backends.plant import Plant
-from sim_backends.virtual.remote import RemoteWorld, ServerProcess
+from sim_backends.virtual.remote import RemoteWorld, ServerProcess, VirtualPorts
 from sim_backends.virtual.robot import VirtualRobot
 
 
 def build(request: RunRequest) -> Session:
-    """Everything a run needs, not open yet. Raises InputError for what does not fit together."""
-    if request.schedules.balls:
-        overrides = (*request.overrides, "plant.ball=true")
-        request = request.model_copy(update={"overrides": overrides})
-    return build_robot(request, load_robot(request.robot, request.overrides))
+    """Everything a run needs, not open yet. Raises InputError for what does not fit together, and
+    for a walk on the ground of a real robot that has not passed one in the air.
+    """
+    more = {
+        "plant.ball=true": bool(request.schedules.balls),
+        "plant.hoist=true": request.hoisted and not request.live,
+    }
+    overrides = (*request.overrides, *(change for change, wanted in more.items() if wanted))
+    request = request.model_copy(update={"overrides": overrides})
+    session = build_robot(request, load_robot(request.robot, overrides))
+    if on_the_ground(session):
+        require_hoisted_walk(session)
+    return session
 
 
 def build_robot(request: RunRequest, description: RobotDescription) -> Session:
     """`build` for a description that is no file's."""
     resolved = request.resolved(description)
+    description = description.at_rate(control_rate(resolved))
     if resolved.backend == "mujoco":
         return _on_mujoco(resolved, description)
     if resolved.bus == "real":
@@ -59,8 +71,8 @@ def _on_mujoco(request: RunRequest, description: RobotDescription) -> Session:
         velocity = (_initial_speed(request, description), description.start.lateral_velocity)
     mapping, motors = None, None
     if description.actuation == "servo":
-        mapping = GainMapping(description, _ideal_calibration(description, {}))
-        motors = _nominal_motors(description)
+        mapping = GainMapping(description, ideal_calibration(description, {}))
+        motors = nominal_motors(description)
     plant = Plant(description, rate_hz, seed, motors, velocity)
     backend = MujocoBackend(description, plant, mapping, rate_hz, seed)
     return _session(request, description, backend, plant, figures=plant.figures)
@@ -69,10 +81,10 @@ def _on_mujoco(request: RunRequest, description: RobotDescription) -> Session:
 def _in_lockstep(request: RunRequest, description: RobotDescription) -> Session:
     """The dry run: the real driver on a virtual robot, both on the virtual clock."""
     rate_hz, seed = control_rate(request), request.seed
-    plant = Plant(description, rate_hz, seed, _nominal_motors(description))
+    plant = Plant(description, rate_hz, seed, nominal_motors(description))
     robot = VirtualRobot(description, plant, seed, rate_hz)
     robot.faults.plan(request.faults)
-    calibration = _ideal_calibration(description, robot.calibration_data)
+    calibration = ideal_calibration(description, robot.calibration_data)
     mapping = GainMapping(description, calibration)
     backend = BusBackend(description, robot.clock, rate_hz, robot.port_urls, calibration, mapping)
     session = _session(
@@ -90,15 +102,22 @@ def _in_lockstep(request: RunRequest, description: RobotDescription) -> Session:
 
 def _on_terminals(request: RunRequest, description: RobotDescription) -> Session:
     """The dry run in real time: the virtual robot is another process behind ptys."""
+    server = ServerProcess(request.robot, control_rate(request), request.seed, request.overrides)
+    return on_virtual_robot(request, description, server)
+
+
+def on_virtual_robot(
+    request: RunRequest, description: RobotDescription, server: VirtualPorts
+) -> Session:
+    """A run on a virtual robot in another process, which is told to end with the session."""
     rate_hz = control_rate(request)
     with ExitStack() as stack:
-        server = ServerProcess(request.robot, rate_hz, request.seed, request.overrides)
         stack.callback(server.close)
         world = RemoteWorld(server.control)
         stack.callback(world.close)
         if request.faults:
             world.plan_faults(request.faults)
-        calibration = _ideal_calibration(description, world.calibration_data)
+        calibration = ideal_calibration(description, world.calibration_data)
         mapping = GainMapping(description, calibration)
         backend = BusBackend(
             description,
@@ -123,30 +142,32 @@ def _on_terminals(request: RunRequest, description: RobotDescription) -> Session
 
 def _on_real_bus(request: RunRequest, description: RobotDescription) -> Session:
     ports = {
-        **{f"buses.{name}": bus.port for name, bus in description.buses.items()},
-        **{f"boards.{name}": board.port for name, board in description.boards.items()},
+        **{name: bus.port for name, bus in description.buses.items()},
+        **{name: board.port for name, board in description.boards.items()},
+        **request.ports,
     }
-    unknown = [key for key, port in ports.items() if port is None]
+    unknown = [name for name, port in ports.items() if port is None]
     if unknown:
+        kind = "buses" if unknown[0] in description.buses else "boards"
         raise DescriptionError(
-            description.file, f"{unknown[0]}.port", "is missing: a real robot has a port for each "
-            f"bus and board (missing here: {', '.join(unknown)})"
+            description.file, f"{kind}.{unknown[0]}.port", "is missing: a real robot has a port "
+            f"for each bus and board (missing here: {', '.join(unknown)}); write it there, or "
+            "give --port NAME=DEVICE"
         )  # fmt: skip
-    if description.calibration is None:
-        raise DescriptionError(description.file, "calibration", "is missing: a real robot has one")
-    calibration = load_calibration(Path(description.file).parent / description.calibration)
-    mapping = GainMapping(description, calibration)
-    urls = {key.partition(".")[2]: port for key, port in ports.items() if port is not None}
+    file = calibration_file(description)
+    calibration = load_calibration(file)
     backend = BusBackend(
         description,
         MonotonicClock(),
         control_rate(request),
-        urls,
+        {name: port for name, port in ports.items() if port is not None},
         calibration,
-        mapping,
+        GainMapping(description, calibration),
         guarded=True,
     )
-    return _session(request, description, backend, None)
+    session = _session(request, description, backend, None)
+    session.meta["calibration"] = {"file": str(file), "identity": calibration.identity()}
+    return session
 
 
 def _session(
@@ -156,8 +177,8 @@ def _session(
     world: World | None,
     **more: Any,
 ) -> Session:
-    estimator = _estimator(request, description, world)
     controller = _controller(request, description)
+    estimator = _estimator(request, description, world, controller.status)
     hidden = hidden_values(description, request.seed).as_dict() if world is not None else {}
     meta = {"hidden": hidden}
     if isinstance(backend, BusBackend) and not request.lockstep:
@@ -166,8 +187,10 @@ def _session(
 
 
 def _estimator(
-    request: RunRequest, description: RobotDescription, world: World | None
+    request: RunRequest, description: RobotDescription, world: World | None, status: WalkStatus
 ) -> Estimator:
+    if request.estimator == "sensors" and (request.hoisted or request.activity != "walk"):
+        return HangingEstimator(description, control_rate(request), status)
     if request.estimator == "sensors":
         return SensorEstimator(description, control_rate(request))
     if world is None:
@@ -177,8 +200,12 @@ def _estimator(
 
 def _controller(request: RunRequest, description: RobotDescription) -> Controller:
     rate_hz, ankle_limit = control_rate(request), bool(request.ankle_limit)
+    if request.activity == "stand":
+        return PoseHolder(description, description.start_position)
+    if request.activity == "sit":
+        return PoseHolder(description, sit_position(description))
     if description.actuation == "servo":
-        return ServoWalker(description, rate_hz, ankle_limit)
+        return ServoWalker(description, rate_hz, ankle_limit, hoisted=request.hoisted)
     return TorqueWalker(
         description,
         rate_hz,
@@ -203,7 +230,7 @@ def _initial_speed(request: RunRequest, description: RobotDescription) -> float:
     return speed if limit is None else max(-limit, min(speed, limit))
 
 
-def _ideal_calibration(description: RobotDescription, data: Mapping[str, Any]) -> RobotCalibration:
+def ideal_calibration(description: RobotDescription, data: Mapping[str, Any]) -> RobotCalibration:
     """What a virtual robot's calibration would find, but for the errors that its seed draws.
 
     Servos that were identified are the file's, for a virtual robot as for a real one.
@@ -214,11 +241,11 @@ def _ideal_calibration(description: RobotDescription, data: Mapping[str, Any]) -
     calibration = validate(RobotCalibration, content, where)
     if description.calibration is None:
         return calibration
-    found = load_calibration(Path(description.file).parent / description.calibration)
+    found = load_calibration(calibration_file(description))
     return calibration.model_copy(update={"servos": found.servos})
 
 
-def _nominal_motors(description: RobotDescription) -> MotorParameters:
+def nominal_motors(description: RobotDescription) -> MotorParameters:
     """The data sheet's, from which a seed draws what a virtual robot has."""
-    ideal = _ideal_calibration(description, {})
+    ideal = ideal_calibration(description, {})
     return motor_parameters(description, ideal.model_copy(update={"servos": {}}))

@@ -10,6 +10,7 @@ from hil.compose.sessions import build_robot, control_rate
 from hil.errors import InputError
 from hil.fault_spec import FaultSpec
 from hil.identify import Rig, joint_index
+from hil.miswire import parse_miswires
 from hil.request import RunRequest
 from hil.robot_files import load_robot
 from hil.session import Session
@@ -17,15 +18,12 @@ from sim_backends.hidden_servo import hidden_servo, joint_inertia
 from sim_backends.plant import Plant
 from sim_backends.virtual.server import run_server, stdin_is_pipe
 
-HOIST = 0.3
-"""How high a virtual robot is lifted to be moved without touching the floor [m]."""
-
 
 def hoist(session: Session, joint: str) -> float:
     """Lift a simulated robot off its feet; the inertia at a joint, rotor included [kg·m²]."""
     if not isinstance(session.world, Plant):
         raise InputError("only a simulated robot in lockstep can be hoisted")
-    session.world.hoist(HOIST)
+    session.world.hoist()
     return joint_inertia(session.world, session.description.joint_names.index(joint))
 
 
@@ -43,7 +41,7 @@ def servo_rig(request: RunRequest, joint: str) -> Rig:
         raise InputError("identify moves servos through the driver: use --backend bus")
     hidden = {}
     if isinstance(session.world, Plant):
-        session.world.hoist(HOIST)
+        session.world.hoist()
         hidden = hidden_servo(session.world, index)
     calibration = backend.calibration
     return Rig(
@@ -71,10 +69,12 @@ def serve_virtual(
     overrides: tuple[str, ...],
     as_json: bool,
     faults: Sequence[FaultSpec] = (),
+    miswire: Sequence[str] = (),
 ) -> None:
     """Serve a virtual robot on pseudo-terminals in this process until it is told to stop."""
     description = load_robot(robot, overrides)
     if not description.buses:
         raise InputError(f"{description.name} has no servo bus to emulate")
     rate_hz = rate_hz or description.defaults.rate_hz
-    run_server(description, rate_hz, seed, as_json, stdin_is_pipe(), faults)
+    wrong = parse_miswires(miswire, description)
+    run_server(description, rate_hz, seed, as_json, stdin_is_pipe(), faults, wrong)

@@ -1,6 +1,7 @@
 """The safety chain of a robot: which monitors it has and how it comes to rest."""
 
 from hil.description import RobotDescription
+from hil.request import Feet
 from hil.safety.decision import WayOut
 from hil.safety.feet import FeetMonitor
 from hil.safety.monitor import Monitor
@@ -18,9 +19,17 @@ from hil.safety.way_out import LAND_S, sit_time_s
 
 
 def make_supervisor(
-    description: RobotDescription, rate_hz: int, weight_n: float, *, paced: bool
+    description: RobotDescription,
+    rate_hz: int,
+    weight_n: float,
+    *,
+    paced: bool,
+    feet: Feet = "carry",
 ) -> Supervisor:
-    """The supervisor of a run. `paced`: ticks are those of the wall clock, and can be late."""
+    """The supervisor of a run. `paced`: ticks are those of the wall clock, and can be late.
+
+    `feet`: carry the walking robot, hang in the air, or may do either.
+    """
     sit_ns = round(sit_time_s(description) * 1e9)
     way_out = WayOut(sit_ns, round(LAND_S * 1e9) if sit_ns else 0)
     monitors: list[Monitor] = [SilenceMonitor(description), BoardMonitor(description)]
@@ -31,7 +40,7 @@ def make_supervisor(
             LoadMonitor(description, rate_hz),
             TemperatureMonitor(description),
             VoltageMonitor(description),
-            FeetMonitor(description, rate_hz, weight_n),
+            FeetMonitor(description, rate_hz, weight_n, feet),
             ClampMonitor(),
         ]
     if paced:

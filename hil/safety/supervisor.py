@@ -19,7 +19,7 @@ class Supervisor:
         self._monitors = (self._body, *monitors)
         self._way_out = way_out
         self._pending: list[Event] = []
-        self._told: set[tuple[str, str]] = set()
+        self._told: set[tuple[str, str, str]] = set()
 
     def begin_walking(self, base_height: float) -> None:
         """T = 0, with the root body at a height [m]."""
@@ -51,12 +51,12 @@ class Supervisor:
         return action
 
     def _write_down(self, events: list[Event], time_s: float) -> None:
-        """Each trouble once a run: a link that is poor for long is one line, not hundreds."""
+        """Each trouble once a run, and once more when it gets worse: a link that is poor for long
+        is one line, not hundreds."""
         for event in events:
-            key = event.source, event.name
-            if key in self._told:
-                continue
-            self._told.add(key)
             told = event.severity < Severity.SOFT_STOP
             reaction = "none" if told else event.severity.name.lower()
-            self.faults.append(Fault(time_s, event.source, event.name, reaction))
+            key = event.source, event.name, reaction
+            if key not in self._told:
+                self._told.add(key)
+                self.faults.append(Fault(time_s, event.source, event.name, reaction))

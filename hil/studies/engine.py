@@ -1,44 +1,59 @@
 """Runs the cases of a study in parallel processes, each of them once."""
 
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import Executor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from multiprocessing import active_children, get_context
+from contextlib import AbstractContextManager, ExitStack
 from types import TracebackType
 from typing import Self
 
 from hil.errors import StrideError
 from hil.studies.folder import StudyFolder
 from hil.studies.progress import CaseProgress
-from hil.studies.study import CaseT, Result, case_key
-from hil.studies.worker import prepare_worker, run_case
+from hil.studies.study import CaseT, Counter, Result, StudyResult, case_key
+from hil.studies.worker import run_case
+from hil.studies.workers import dask_workers, local_processes
 
 
 class CaseRunner:
     """Hands missing cases to worker processes and keeps what they return in the study's folder.
 
     Every case runs in a worker, also with one job, so that results do not depend on the number of
-    jobs. Raises StrideError when a worker dies; what an unfit case raised is raised again.
+    jobs, nor on where the workers are: in processes of this machine, or at a Dask `scheduler`.
+    Raises StrideError when a worker dies; what an unfit case raised is raised again.
     """
 
-    def __init__(self, folder: StudyFolder, jobs: int) -> None:
+    def __init__(self, folder: StudyFolder, jobs: int, scheduler: str | None = None) -> None:
         self._folder = folder
         self._jobs = jobs
-        self._others = set(active_children())
-        self._pool: ProcessPoolExecutor | None = None
+        self._scheduler = scheduler
+        self._workers = ExitStack()
+        self._executor: Executor | None = None
 
-    def __call__(self, function: Callable[[CaseT], Result], cases: Sequence[CaseT]) -> list[Result]:
+    def __call__(
+        self,
+        function: Callable[[CaseT], Result],
+        cases: Sequence[CaseT],
+        counter: Counter | None = None,
+    ) -> list[Result]:
         """Results in the order of the cases. `function` is importable by its module's name."""
         kept = self._folder.results
-        distinct = list(dict.fromkeys(cases))
-        missing = [case for case in distinct if case_key(case) not in kept]
-        if missing:
+        keys = [case_key(case) for case in cases]
+        distinct = dict(zip(keys, cases, strict=True))
+        missing = [case for key, case in distinct.items() if key not in kept]
+        if counter is not None:
+            for _ in range(len(cases) - len(missing)):
+                counter.advance()
+            self._run(function, missing, counter)
+        elif missing:
             done = len(distinct) - len(missing)
             with CaseProgress(self._folder.path.name, len(distinct), done) as progress:
-                for case, result in self._finished(function, missing):
-                    self._folder.append(case, result)
-                    progress.advance()
-        return [kept[case_key(case)] for case in cases]
+                self._run(function, missing, progress)
+        return [kept[key] for key in keys]
+
+    def publish(self, result: StudyResult) -> None:
+        """Write what is known so far into the folder."""
+        self._folder.publish(result)
 
     def __enter__(self) -> Self:
         return self
@@ -50,25 +65,26 @@ class CaseRunner:
         traceback: TracebackType | None,
     ) -> None:
         """End the workers; if the study was cut short, without waiting for their cases."""
-        if self._pool is None:
-            return
         if error is not None:
-            self._pool.shutdown(wait=False, cancel_futures=True)
-            for worker in set(active_children()) - self._others:
-                worker.kill()
             error.add_note(
                 f"finished cases are kept in {self._folder.path}: the same command goes on there"
             )
-        self._pool.shutdown()
+        self._workers.__exit__(kind, error, traceback)
+
+    def _run(
+        self, function: Callable[[CaseT], Result], cases: Sequence[CaseT], counter: Counter
+    ) -> None:
+        for case, result in self._finished(function, cases):
+            self._folder.append(case, result)
+            counter.advance()
 
     def _finished(
         self, function: Callable[[CaseT], Result], cases: Sequence[CaseT]
     ) -> Iterator[tuple[CaseT, Result]]:
         """Cases with their results, as they come."""
-        if self._pool is None:
-            spawn = get_context("spawn")  # no copied threads, and the same on every system
-            self._pool = ProcessPoolExecutor(self._jobs, spawn, prepare_worker)
-        futures = {self._pool.submit(run_case, function, case): case for case in cases}
+        if self._executor is None:
+            self._executor = self._workers.enter_context(self._make_workers())
+        futures = {self._executor.submit(run_case, function, case): case for case in cases}
         for future in as_completed(futures):
             case = futures[future]
             try:
@@ -78,3 +94,8 @@ class CaseRunner:
             except Exception as error:
                 error.add_note(f"in the case {case_key(case)}")
                 raise
+
+    def _make_workers(self) -> AbstractContextManager[Executor]:
+        if self._scheduler is not None:
+            return dask_workers(self._scheduler)
+        return local_processes(self._jobs)

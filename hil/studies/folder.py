@@ -1,5 +1,6 @@
 """The folder of a study: what it is (study.json) and every finished case (cases.jsonl)."""
 
+import csv
 import fcntl
 import json
 import sys
@@ -13,7 +14,7 @@ from hil import __version__
 from hil.errors import InputError
 from hil.robot_files import load_robot
 from hil.run_folder import git_commit, read_json, write_json
-from hil.studies.study import Case, Result, Study, case_key
+from hil.studies.study import Case, Result, Study, StudyResult, case_key
 
 IDENTITY = ("study", "robot", "settings", "description_sha256", "model_sha256", "version")
 """Keys of study.json in which two studies must agree to share results."""
@@ -29,13 +30,18 @@ class StudyFolder:
     def __init__(self, study: Study, out: Path | None) -> None:
         what = describe(study)
         self.path = out or Path("studies") / f"{study.name}-{what['robot']}"
+        self._name = study.name
         self.note: str | None = None
         """What a user must know of the results that are already here."""
         self._make()
-        self._adopt(what)
         self._file = self._lock()
         self.results: dict[str, Result] = self._read()
         """Of every finished case, by `case_key`."""
+        try:
+            self._adopt(what)
+        except InputError:
+            self._file.close()
+            raise
 
     def append(self, case: Case, result: Result) -> None:
         """Keep a result: it is in the file when this returns."""
@@ -44,6 +50,13 @@ class StudyFolder:
         self._file.write(json.dumps(line, allow_nan=False) + "\n")
         self._file.flush()
         self.results[key] = result
+
+    def publish(self, result: StudyResult) -> None:
+        """Write `<study>.csv`, `<study>.png` and what else there is, in place of older ones."""
+        write_csv(self.path / f"{self._name}.csv", result.rows)
+        result.draw(self.path / f"{self._name}.png")
+        for name, text in result.files.items():
+            (self.path / name).write_text(text, encoding="utf-8")
 
     def __enter__(self) -> Self:
         return self
@@ -65,12 +78,12 @@ class StudyFolder:
             raise InputError(f"--out {self.path}: is not empty and holds no study")
 
     def _adopt(self, what: dict[str, Any]) -> None:
-        """Claim an empty folder, or check that the study in it is this one."""
+        """Claim a folder without results, or check that the study in it is this one."""
         path = self.path / "study.json"
-        if not path.exists():
+        found = read_json(path) if path.exists() else dict.fromkeys(IDENTITY)
+        if not self.results and set(IDENTITY) <= set(found):
             write_json(path, what)
             return
-        found = read_json(path)
         different = [key for key in IDENTITY if found.get(key) != what[key]]
         if different:
             raise InputError(
@@ -117,6 +130,14 @@ def describe(study: Study) -> dict[str, Any]:
         "started": datetime.now(UTC).isoformat(timespec="seconds"),
         "command": sys.argv,
     }
+
+
+def write_csv(path: Path, rows: list[Result]) -> None:
+    """Rows with the keys of the first one as the head; nothing is written as an empty field."""
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer = csv.DictWriter(file, list(rows[0]) if rows else [])
+        writer.writeheader()
+        writer.writerows(rows)
 
 
 def _details(found: dict[str, Any], what: dict[str, Any], different: list[str]) -> list[str]:

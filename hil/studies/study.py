@@ -23,11 +23,31 @@ Result = dict[str, Any]
 """JSON values. `error` holds the message of a case that could not be run."""
 
 
+class Counter(Protocol):
+    """Is told of every case that is done."""
+
+    def advance(self) -> None:
+        """One more."""
+        ...
+
+
 class RunCases(Protocol):
     """Runs cases, or remembers those that ran before; results in the order of the cases."""
 
-    def __call__(self, function: Callable[[CaseT], Result], cases: Sequence[CaseT]) -> list[Result]:
-        """`function` is a module's own: worker processes import it."""
+    def __call__(
+        self,
+        function: Callable[[CaseT], Result],
+        cases: Sequence[CaseT],
+        counter: Counter | None = None,
+    ) -> list[Result]:
+        """`function` is a module's own: worker processes import it.
+
+        `counter` counts these cases in place of a progress bar of their own.
+        """
+        ...
+
+    def publish(self, result: "StudyResult") -> None:
+        """Show in the study's folder what is known so far, as CSV and figure."""
         ...
 
 
@@ -50,6 +70,8 @@ class StudyResult:
     draw: Callable[[Path], None]
     """Writes the figure to a file."""
     notes: list[str] = field(default_factory=list)
+    files: dict[str, str] = field(default_factory=dict)
+    """Further files of the study's folder: name and text."""
 
 
 class Study(Config, ABC):

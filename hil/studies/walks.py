@@ -14,6 +14,7 @@ from hil.loop import Loop
 from hil.request import RunRequest
 from hil.robot_facts import body_weight
 from hil.run import session_report
+from hil.session import Session
 from hil.studies.noisy_loads import NoisyLoads
 from hil.trace import Trace, TraceSink
 
@@ -56,6 +57,12 @@ def walk(request: RunRequest, *more: Sink, cell_noise_n: float = 0.0) -> Walk:
     if cell_noise_n > 0.0:
         noisy = NoisyLoads(session.estimator, cell_noise_n, request.seed)
         session = replace(session, estimator=noisy)
+    return walk_session(session, *more)
+
+
+def walk_session(session: Session, *more: Sink) -> Walk:
+    """The walk of a session that is not open yet; it is closed at the end."""
+    request = session.request
     try:
         session.backend.open()
         rate_hz = session.request.rate_hz or session.description.defaults.rate_hz

@@ -6,6 +6,7 @@ import threading
 from collections.abc import Callable
 from multiprocessing import parent_process
 
+from hil import __version__
 from hil.errors import StrideError
 from hil.studies.study import CaseT, Result
 
@@ -14,6 +15,11 @@ def prepare_worker() -> None:
     """Leave Ctrl-C to the study, and end with it, however it ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_the_study, daemon=True).start()
+
+
+def worker_version() -> str:
+    """Version of this program where the worker runs."""
+    return __version__
 
 
 def run_case(function: Callable[[CaseT], Result], case: CaseT) -> Result:

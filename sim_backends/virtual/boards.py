@@ -16,7 +16,7 @@ from drivers.boards.frames import (
 from hil.description import Board, RobotDescription
 from sim_backends.latency import wire_time_ns
 from sim_backends.plant import Plant
-from sim_backends.sensor_models import CellErrors, ImuErrors
+from sim_backends.sensor_models import CellErrors, ImuErrors, ImuSample
 from sim_backends.virtual.clock import VirtualClock
 from sim_backends.virtual.host_port import HostPort
 from sim_backends.virtual.wire_faults import WireFaults
@@ -128,12 +128,20 @@ class LoadCells:
         self._gain = gain
         self._zero = np.rint(random.normal(0.0, CELL_ZERO, 4))
         self._cells: list[tuple[float, float]] = np.transpose((self._zero, gain)).tolist()
+        self.pressed: list[float] | None = None
+        """What a hand puts on the cells beside the floor [N], (4,)."""
+        self.order: list[int] | None = None
+        """Which cell is wired to each channel, where that is not as it should be."""
 
     def frame(self, sequence: int, device_us: int) -> bytes:
         """A frame of the loads now."""
-        forces = self._errors.measure(self._plant.corner_forces()[self._corners])
-        cells = zip(self._cells, forces, strict=True)
+        true = self._plant.corner_forces()[self._corners]
+        if self.pressed is not None:
+            true = [floor + hand for floor, hand in zip(true, self.pressed, strict=True)]
+        cells = zip(self._cells, self._errors.measure(true), strict=True)
         counts = [round(zero + gain * force) for (zero, gain), force in cells]
+        if self.order is not None:
+            counts = [counts[cell] for cell in self.order]
         return encode_foot_frame(sequence, device_us, _ALL_CELLS, counts)
 
     def calibration(self) -> dict[str, list[float]]:
@@ -143,18 +151,21 @@ class LoadCells:
 
 
 class InertialUnit:
-    """The IMU in raw registers, in base axes."""
+    """The IMU in raw registers: in base axes, or turned against them."""
 
     def __init__(self, plant: Plant, errors: ImuErrors) -> None:
         self._plant = plant
         self._errors = errors
+        self.turn: Callable[[ImuSample], ImuSample] | None = None
+        """From base axes to those of a unit that is mounted otherwise."""
 
     def frame(self, sequence: int, device_us: int) -> bytes:
         """A frame of the motion now."""
         plant = self._plant
-        orientation, gyro, force = self._errors.measure(
+        sample = self._errors.measure(
             plant.orientation, plant.angular_velocity, plant.specific_force()
         )
+        orientation, gyro, force = sample if self.turn is None else self.turn(sample)
         return encode_imu_frame(
             sequence,
             device_us,

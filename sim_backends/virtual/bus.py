@@ -1,6 +1,6 @@
 """One emulated servo bus: half-duplex wire, who answers when, and the watchdog's silence."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 
 from drivers.dynamixel.control_table import BAUD_CODES
@@ -42,8 +42,11 @@ class ServoBus:
         self._baud = 0
         self._host_until_ns = self._servos_until_ns = 0
         self._heard_ns = clock.now_ns()
-        self._watching = False
+        self._look_ns: int | None = None
+        """When the watchdogs are looked at next."""
         self._faults: WireFaults | None = None
+        self.on_packet: Callable[[str], None] | None = None
+        """Told `heard` for every packet, `collided` for host bytes that were lost."""
         self.collisions = 0
         """Host transmissions that were lost because servos were talking."""
         for servo in self._servos:
@@ -80,6 +83,8 @@ class ServoBus:
     def _arrive(self, data: bytes, baud: int, begin_ns: int) -> None:
         if begin_ns < self._servos_until_ns:
             self.collisions += 1
+            if self.on_packet is not None:
+                self.on_packet("collided")
             return
         if baud != self._baud:
             self._baud = baud
@@ -87,6 +92,8 @@ class ServoBus:
         now_ns = self._clock.now_ns()
         for packet in self._reader.feed(data):
             self._heard_ns = now_ns
+            if self.on_packet is not None:
+                self.on_packet("heard")
             if self._faults is not None:
                 self._faults.draw()
             self._answer(self._dispatcher.handle(packet, BAUD_CODES.get(baud, -1), now_ns))
@@ -108,16 +115,20 @@ class ServoBus:
     def _watch(self) -> None:
         """Look at the watchdogs when the first of them may trip."""
         periods = [servo.watchdog_ns for servo in self._servos if servo.watchdog_ns]
-        if not periods or self._watching:
+        if not periods:
             return
-        self._watching = True
         now_ns, shortest = self._clock.now_ns(), min(periods)
         due_ns = self._heard_ns + shortest
         # One that is silent for longer already has its torque off and will not trip: look later.
-        self._clock.schedule(due_ns if due_ns > now_ns else now_ns + shortest, self._look)
+        due_ns = due_ns if due_ns > now_ns else now_ns + shortest
+        if self._look_ns is None or due_ns < self._look_ns:
+            self._look_ns = due_ns
+            self._clock.schedule(due_ns, partial(self._look, due_ns))
 
-    def _look(self) -> None:
-        self._watching = False
+    def _look(self, due_ns: int) -> None:
+        if due_ns != self._look_ns:
+            return  # A period became shorter: an earlier look took this one's place.
+        self._look_ns = None
         silence_ns = self._clock.now_ns() - self._heard_ns
         for servo in self._servos:
             if 0 < servo.watchdog_ns <= silence_ns:

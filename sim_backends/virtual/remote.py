@@ -10,7 +10,7 @@ import time
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from hil.errors import BackendError, InputError
 from hil.fault_spec import FaultSpec
@@ -20,6 +20,19 @@ from sim_backends.virtual.truth_block import TruthBlock
 START_TIMEOUT_S = 30.0
 STOP_TIMEOUT_S = 3.0
 ANSWER_TIMEOUT_S = 1.0
+
+
+class VirtualPorts(Protocol):
+    """Where a virtual robot in another process is."""
+
+    port_urls: dict[str, str]
+    """Terminals of all buses and boards."""
+    control: Path
+    """The control socket."""
+
+    def close(self) -> None:
+        """The client needs it no longer."""
+        ...
 
 
 class ServerProcess:
@@ -42,9 +55,7 @@ class ServerProcess:
             self.close()
             raise
         self.port_urls: dict[str, str] = {**ready["buses"], **ready["boards"]}
-        """Terminals of all buses and boards."""
         self.control = Path(ready["control"])
-        """The control socket."""
 
     def _ready_line(self) -> bytes:
         """The first line of its output. Raises what its death means."""
@@ -136,9 +147,17 @@ class RemoteWorld:
         """Throw a ball at the trunk, to hit it at a world velocity [m/s]."""
         self._ask({"do": "ball", "mass": mass, "velocity": velocity.tolist()})
 
+    def set_medium(self, level: float, density: float, viscosity: float) -> None:
+        """A liquid up to a level above the floor [m], its density [kg/m³] and viscosity factor."""
+        self._ask({"do": "medium", "medium": [level, density, viscosity]})
+
     def plan_faults(self, faults: Sequence[FaultSpec]) -> None:
         """What goes wrong in this run. Raises BackendError for what the robot cannot have."""
         self._ask({"do": "plan", "faults": [fault.model_dump() for fault in faults]})
+
+    def inject(self, fault: str) -> None:
+        """Have something go wrong, as `--fault` writes it; T counts from now."""
+        self._ask({"do": "inject", "fault": fault})
 
     def begin_faults(self, epoch_ns: int) -> None:
         """T = 0 of the planned faults, on the monotonic clock."""
@@ -147,6 +166,15 @@ class RemoteWorld:
     def set_support(self, supported: bool) -> None:
         """Hold the root body where it is, or let it go."""
         self._ask({"do": "support", "supported": supported})
+
+    def journal(self, *, packets: bool = True) -> dict[str, list[list[Any]]]:
+        """What its servos heard and did, as `Journal.content`, times on the monotonic clock."""
+        answer = self._ask({"do": "journal", "packets": packets})
+        return {ring: answer[ring] for ring in ("packets", "deeds")}
+
+    def do_by_hand(self, request: dict[str, Any]) -> float:
+        """Begin what `sim_backends.virtual.hand` understands; how long it takes [s]."""
+        return float(self._ask(request)["seconds"])
 
     def figures(self) -> dict[str, float | None]:
         """As `Plant.figures`; once closed, as they were then."""

@@ -19,6 +19,7 @@ from sim_backends.virtual.clock import VirtualClock
 from sim_backends.virtual.host_port import Device, HostPort
 from sim_backends.virtual.host_timing import HostTiming
 from sim_backends.virtual.injector import Injector
+from sim_backends.virtual.journal import Journal
 from sim_backends.virtual.motors import Motor, MotorBank, servo_models
 from sim_backends.virtual.register_file import RegisterFile
 from sim_backends.virtual.servo import EmulatedServo
@@ -67,8 +68,8 @@ class VirtualRobot:
             host = HostTiming(compute_ns, ports, self.clock.now_ns)
         else:
             host = HostTiming(0, ports, host_now_ns)
-        buses = self._make_buses(wires, host)
-        self._cells = {
+        self._buses = buses = self._make_buses(wires, host)
+        self.cells = {
             side: LoadCells(
                 plant,
                 index,
@@ -77,7 +78,7 @@ class VirtualRobot:
             )
             for index, side in enumerate(("left", "right"))
         }
-        self._imu = InertialUnit(
+        self.imu = InertialUnit(
             plant, ImuErrors(description.noise, sensors, plant.hidden.pitch_bias)
         )
         lines: dict[str, ServoBus | SensorBoard] = {**buses, **self._make_boards(sensors)}
@@ -101,13 +102,13 @@ class VirtualRobot:
     def _make_boards(self, random: np.random.Generator) -> dict[str, SensorBoard]:
         description = self.description
         sources: dict[str, tuple[FrameMaker, int]] = {
-            foot.board: (self._cells[side].frame, 0)
+            foot.board: (self.cells[side].frame, 1000 * description.boards[foot.board].delay_us)
             for side, foot in description.feet.items()
             if foot.board is not None
         }
         if description.imu is not None:
             hold_ns = 1000 * description.noise.imu_delay_us
-            sources[description.imu.board] = (self._imu.frame, hold_ns)
+            sources[description.imu.board] = (self.imu.frame, hold_ns)
         return {
             name: SensorBoard(
                 description, description.boards[name], self.clock, random, self.ports[name],
@@ -122,7 +123,7 @@ class VirtualRobot:
         `feet` (side to zero [counts] and scale [N/count] of each corner) and `joint_offsets`."""
         feet = self.description.feet
         return {
-            "feet": {s: self._cells[s].calibration() for s in feet if feet[s].board is not None},
+            "feet": {s: self.cells[s].calibration() for s in feet if feet[s].board is not None},
             "joint_offsets": dict.fromkeys(self.description.joint_names, 0.0),
         }
 
@@ -130,6 +131,10 @@ class VirtualRobot:
         """Have something go wrong; T counts from now. Raises InputError."""
         spec = parse_fault(fault) if isinstance(fault, str) else fault
         self.faults.inject(spec, self.clock.now_ns())
+
+    def journal(self, now_ns: Callable[[], int]) -> Journal:
+        """Begin to write down what buses hear and servos do; times by `now_ns`."""
+        return Journal(self.servos, self._buses, now_ns)
 
     def start(self) -> None:
         """Make the lines available to `serial.serial_for_url`."""

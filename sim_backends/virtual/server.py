@@ -27,9 +27,12 @@ import numpy as np
 from hil.description import RobotDescription
 from hil.errors import StrideError
 from hil.fault_spec import FaultSpec, check_faults
+from hil.miswire import Miswire
 from hil.robot_files import load_robot
 from sim_backends.plant import Plant
 from sim_backends.virtual.control import ControlServer, Request, three_numbers
+from sim_backends.virtual.hand import Hand
+from sim_backends.virtual.miswiring import built_wrongly, mount_wrongly, plug_wrongly
 from sim_backends.virtual.motors import nominal_motors
 from sim_backends.virtual.pty_line import PtyLine
 from sim_backends.virtual.robot import VirtualRobot
@@ -52,19 +55,32 @@ class VirtualRobotServer:
     is up to the machine. On one that is too slow virtual time slips.
     """
 
-    def __init__(self, description: RobotDescription, rate_hz: int, seed: int) -> None:
+    def __init__(
+        self,
+        description: RobotDescription,
+        rate_hz: int,
+        seed: int,
+        wrong: Sequence[Miswire] = (),
+    ) -> None:
         self._start_ns = time.monotonic_ns()
+        description = built_wrongly(description, wrong)
         plant = Plant(description, rate_hz, seed, nominal_motors(description))
         self._robot = VirtualRobot(description, plant, seed, rate_hz, host_now_ns=self._now_ns)
         self._plant = plant
+        # Times of the journal are on the monotonic clock, which every process shares.
+        self._journal = self._robot.journal(lambda: self._robot.clock.now_ns() + self._start_ns)
         self._folder = Path(tempfile.mkdtemp(prefix="stridebridge-"))
         self._truth = TruthBlock(self._folder / "truth", len(description.joints), create=True)
         handlers = {"hello": self._hello, "push": self._push, "support": self._support,
-                    "ball": self._ball, "inject": self._inject,
-                    "plan": self._plan, "begin": self._begin,
+                    "ball": self._ball, "medium": self._set_medium,
+                    "inject": self._inject, "plan": self._plan, "begin": self._begin,
+                    "journal": self._tell_journal, "hand": Hand(self._robot).do,
                     "figures": self._figures, "quit": self._quit}  # fmt: skip
         self._control = ControlServer(self._folder / "control", handlers)
         self._lines = {name: PtyLine(device) for name, device in self._robot.devices.items()}
+        self._places = dict(self._lines)
+        plug_wrongly(self._places, wrong)
+        mount_wrongly(self._robot, wrong)
         self._outbox: deque[tuple[int, PtyLine, bytes]] = deque()
         for name, line in self._lines.items():
             self._robot.ports[name].on_bytes = partial(self._post, line)
@@ -80,8 +96,8 @@ class VirtualRobotServer:
         """What the ready line tells."""
         description = self._robot.description
         return {
-            "buses": {name: self._lines[name].path for name in description.buses},
-            "boards": {name: self._lines[name].path for name in description.boards},
+            "buses": {name: self._places[name].path for name in description.buses},
+            "boards": {name: self._places[name].path for name in description.boards},
             "control": str(self._folder / "control"),
         }
 
@@ -178,6 +194,10 @@ class VirtualRobotServer:
         self._plant.throw_ball(mass, np.array(three_numbers(request["velocity"])))
         return {}
 
+    def _set_medium(self, request: Request) -> dict[str, Any]:
+        self._plant.set_medium(*three_numbers(request["medium"]))
+        return {}
+
     def _inject(self, request: Request) -> dict[str, Any]:
         self._robot.inject(str(request["fault"]))
         return {}
@@ -196,6 +216,9 @@ class VirtualRobotServer:
 
     def _figures(self, _: Request) -> dict[str, Any]:
         return {"figures": self._plant.figures()}
+
+    def _tell_journal(self, request: Request) -> dict[str, Any]:
+        return {**self._journal.content(packets=bool(request.get("packets", True)))}
 
     def _quit(self, _: Request) -> dict[str, Any]:
         self._running = False
@@ -221,13 +244,15 @@ def run_server(
     as_json: bool,
     watch_stdin: bool,
     faults: Sequence[FaultSpec] = (),
+    wrong: Sequence[Miswire] = (),
 ) -> None:
     """Serve a virtual robot in this process until a signal; prints where its ports are.
 
-    T = 0 of the faults is when it is ready. Raises InputError for one that it cannot have.
+    `wrong`: how it is put together otherwise than described. T = 0 of the faults is when it is
+    ready. Raises InputError for one that it cannot have.
     """
     check_faults(faults, description)
-    server = VirtualRobotServer(description, rate_hz, seed)
+    server = VirtualRobotServer(description, rate_hz, seed, wrong)
     server.plan_faults(faults)
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: server.stop())

@@ -53,6 +53,8 @@ class EmulatedServo:
         self._effects = self._make_effects()
         self.on_watchdog: Callable[[], None] = lambda: None
         """Called when `watchdog_ns` may have changed."""
+        self.on_trip: Callable[[], None] = lambda: None
+        """Called when its bus watchdog has stopped it."""
         self._mute = False
         self.ready_ns = 0
         """From when on it answers [ns]."""
@@ -280,3 +282,4 @@ class EmulatedServo:
         self._tripped = True
         self.watchdog_ns = 0
         self.drive.hold()
+        self.on_trip()

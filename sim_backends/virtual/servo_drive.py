@@ -44,6 +44,8 @@ class ServoDrive:
         """What it measures; a fault may stand in between."""
         self.frozen = False
         """A fault: its measured registers stand still."""
+        self.on_torque: Callable[[bool], None] = lambda _: None
+        """Told the torque whenever it is switched, or told again to stay."""
         self._encoder_error = 0
         self._aim = CENTRE_COUNTS
 
@@ -106,7 +108,9 @@ class ServoDrive:
         """Torque Enable was written, or an error wants it off."""
         if self._latched:
             self._memory[_TORQUE] = 0
-        self._motor.enable(bool(self._memory[_TORQUE]))
+        on = bool(self._memory[_TORQUE])
+        self._motor.enable(on)
+        self.on_torque(on)
 
     def lose_torque(self) -> None:
         """Torque goes off by itself, without an error."""

@@ -12,7 +12,7 @@ import pytest
 from drivers.guardian import Guardian
 
 MAKER = """
-import os, signal, sys, time
+import os, signal, sys, threading, time
 from drivers.guardian import Guardian
 
 def off():
@@ -20,12 +20,19 @@ def off():
         stream.write("off")
 
 signal.signal(signal.SIGINT, signal.default_int_handler)
-guardian = Guardian(off)
+guardian = Guardian(off, 0.4)
 guardian.start()
+if sys.argv[2] == "beats":
+    threading.Thread(target=lambda: [guardian.beat() or time.sleep(0.01) for _ in range(6000)],
+                     daemon=True).start()
 print("ready", guardian._child, flush=True)
 end = sys.stdin.readline().strip()
 if end == "close":
     guardian.close()
+elif end == "take over":
+    guardian.take_over()
+    guardian.close()
+    time.sleep(60)
 elif end == "die":
     os.kill(guardian._child, signal.SIGKILL)
     while guardian.alive():
@@ -39,9 +46,9 @@ else:
 
 
 @pytest.fixture
-def maker(tmp_path):
+def maker(tmp_path, request):
     mark = tmp_path / "mark"
-    command = [sys.executable, "-c", MAKER, str(mark)]
+    command = [sys.executable, "-c", MAKER, str(mark), getattr(request, "param", "beats")]
     process = subprocess.Popen(
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, start_new_session=True
     )
@@ -86,6 +93,27 @@ def test_a_signal_to_the_whole_group_leaves_the_guardian_to_act(maker):
     os.killpg(maker.pid, signal.SIGINT)
     assert gone(maker.guardian)
     assert maker.mark.read_text() == "off"
+
+
+@pytest.mark.parametrize("maker", ["hangs"], indirect=True)
+def test_a_maker_that_hangs_is_killed_before_torque_goes_off(maker):
+    assert maker.wait(30) == -signal.SIGKILL
+    assert gone(maker.guardian)
+    assert maker.mark.read_text() == "off"
+
+
+def test_a_maker_that_was_suspended_is_killed_too(maker):
+    maker.send_signal(signal.SIGSTOP)
+    assert maker.wait(30) == -signal.SIGKILL
+    assert gone(maker.guardian)
+    assert maker.mark.read_text() == "off"
+
+
+def test_a_guardian_whose_maker_gives_up_acts_at_once_and_lets_it_live(maker):
+    end(maker, "take over")
+    assert gone(maker.guardian)
+    assert maker.mark.read_text() == "off"
+    assert maker.poll() is None
 
 
 def test_a_guardian_sent_home_does_nothing(maker):

@@ -140,6 +140,7 @@ class FakeWorld:
         self.estimator = estimator
         self.pushes = []
         self.balls = []
+        self.media = []
         self.support = []
         self.truth_now: Truth = topics(JOINTS, truth=True)["truth"]
         self.truth_now.base_position = np.array([0.0, 0.0, 0.25])
@@ -154,6 +155,9 @@ class FakeWorld:
 
     def throw_ball(self, mass, velocity):
         self.balls.append((mass, tuple(velocity)))
+
+    def set_medium(self, level, density, viscosity):
+        self.media.append((level, density, viscosity))
 
     def set_support(self, supported):
         self.support.append(supported)

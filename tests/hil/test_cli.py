@@ -26,6 +26,10 @@ BAD_INPUT = [
     ["walk", "--duration", "inf"],
     ["walk", "--rate", "100000"],
     ["walk", "--step-width", "0"],
+    ["walk", "--water=-0.1"],
+    ["walk", "--water", "deep"],
+    ["walk", "--water", "0.1", "--viscosity", "0"],
+    ["walk", "--density", "1100"],
     ["walk", "--bus", "real"],
     ["walk", "--live"],
     ["walk", "--set", "colour=red"],
@@ -92,12 +96,16 @@ def test_every_option_reaches_the_request(walked, tmp_path):
         *("walk", "--backend", "mujoco", "--rate", "225", "--duration", "0.1", "--seed", "3"),
         *("--speed", "0.1", "--speed", "0.3@5", "--lateral", "0.05", "--turn", "90@2"),
         *("--step-width", "0.12", "--push", "0,3,0@4+0.3", "--estimator", "truth"),
+        *("--water", "0.1", "--water", "0@8", "--density", "1100", "--viscosity", "2@3"),
         *("--no-ankle-limit", "--set", "mass_scale=1.1", "--out", str(tmp_path / "run")),
     )
     assert result.exit_code == 0, result.output
     (request,) = asked
     assert (request.backend, request.rate_hz, request.seed) == ("mujoco", 225, 3)
     assert request.schedules.speed == ((0.0, 0.1), (5.0, 0.3))
+    assert request.schedules.water == ((0.0, 0.1), (8.0, 0.0))
+    assert request.schedules.density == ((0.0, 1100.0),)
+    assert request.schedules.viscosity == ((3.0, 2.0),)
     assert request.schedules.lateral == ((0.0, 0.05),)
     assert request.schedules.turns[0] == (2.0, pytest.approx(1.5708, abs=1e-4))
     assert request.schedules.step_width == 0.12

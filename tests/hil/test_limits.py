@@ -50,6 +50,58 @@ def test_a_command_inside_its_limits_passes_unchanged():
     assert not limits.flags.any()
 
 
+STEP = ROBOT.safety.goal_speed_max / 300 * np.array([j.velocity_limit for j in ROBOT.joints])
+positions = arrays(np.float64, (12, N), elements=finite)
+
+
+@given(positions)
+def test_a_goal_moves_no_further_in_a_tick_than_it_may_and_stays_in_its_range(goals):
+    limits, last = JointLimits(ROBOT, 300), None
+    command = JointCommand.zeros(N)
+    command.stiffness[:] = 10.0
+    for goal in goals:
+        command.position[:] = goal
+        out = limits.apply(command)
+        assert np.all((out.position >= LOW) & (out.position <= HIGH))
+        ranged = np.clip(goal, LOW, HIGH)
+        if last is not None:
+            assert np.all(np.abs(out.position - last) <= STEP * (1 + 1e-12))
+            # It goes as far as it may, and no limit is told that did nothing.
+            expected = np.clip(ranged, last - STEP, last + STEP)
+            assert np.array_equal(out.position, expected)
+        fast = (limits.flags & Limit.VELOCITY) != 0
+        assert np.array_equal(fast, out.position != ranged)
+        assert np.array_equal((limits.flags & Limit.POSITION) != 0, ranged != goal)
+        last = out.position.copy()
+
+
+def test_a_goal_that_jumps_arrives_all_the_same_and_a_glitch_is_cut_off():
+    limits = JointLimits(ROBOT, 300)
+    command = JointCommand.zeros(N)
+    command.stiffness[:], command.position[:] = 10.0, 0.1
+    limits.apply(command)
+    command.position[3] = 1.5
+    ticks = 0
+    while limits.apply(command).position[3] != 1.5:
+        ticks += 1
+        assert limits.flags[3] == Limit.VELOCITY
+    assert ticks == int(1.4 / STEP[3])
+    command.position[3] = 0.1
+    assert limits.apply(command).position[3] == pytest.approx(1.5 - STEP[3])
+
+
+def test_a_command_that_is_refused_does_not_move_what_the_next_one_starts_from():
+    limits = JointLimits(ROBOT, 300)
+    command = JointCommand.zeros(N)
+    command.stiffness[:], command.position[:] = 10.0, 0.1
+    limits.apply(command)
+    command.position[3], command.torque[0] = 2.0, np.nan
+    with pytest.raises(InvalidCommandError):
+        limits.apply(command)
+    command.torque[0] = 0.0
+    assert limits.apply(command).position[3] == pytest.approx(0.1 + STEP[3])
+
+
 def test_flags_of_one_tick_are_gone_in_the_next():
     limits = JointLimits(ROBOT)
     command = JointCommand.zeros(N)

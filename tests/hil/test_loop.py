@@ -30,7 +30,7 @@ def test_a_walk_stands_up_first_and_lasts_as_long_as_it_should():
     assert outcome.clock_ns == pytest.approx(1e9, abs=4e6)
     assert session.controller.ticks == 300
     assert session.world.support == [True, False]
-    assert session.backend.journal == ["open", "arm", "soft", "torque_off", "close"]
+    assert session.backend.journal == ["open", "arm", "torque_off", "close"]
 
 
 def test_start_up_moves_smoothly_from_the_pose_found_to_the_start_pose():
@@ -58,7 +58,7 @@ def test_a_walk_ends_on_bent_legs_before_torque_goes_off():
     assert np.allclose(down[-1], goal)
     assert np.abs(np.diff(down, axis=0)).max() < 1.6 * np.abs(goal).max() / (300 * sitting.time)
     assert outcome.faults == [] and session.controller.ticks == 300
-    assert session.backend.journal[-3:] == ["soft", "torque_off", "close"]
+    assert session.backend.journal[-2:] == ["torque_off", "close"]
 
 
 def test_one_command_that_is_not_sound_is_passed_over():
@@ -107,6 +107,7 @@ def test_the_operators_schedules_and_pushes_reach_controller_and_world():
             "turns": ((0.5, 1.0),),
             "pushes": ({"force": (0, 3, 0), "start": 0.2, "duration": 0.1},),
             "balls": ({"mass": 0.2, "velocity": (0, 2, 0), "start": 0.4},),
+            "water": ((0.0, 0.1), (0.5, 0.1), (0.52, 0.2)),
         },
     )
     loop, _ = run(session)
@@ -116,6 +117,10 @@ def test_the_operators_schedules_and_pushes_reach_controller_and_world():
     assert headings.tolist() == [0.0] * 150 + [1.0] * 150
     assert session.world.pushes == [(0, 3, 0)] * 30 + [(0, 0, 0)]
     assert session.world.balls == [(0.2, (0, 2, 0))]
+    levels = [level for level, _, _ in session.world.media]
+    assert levels[0] == 0.1, "from the first tick on, and told again only when it changes"
+    assert len(levels) == 7
+    assert levels[-1] == pytest.approx(0.2)
 
 
 def test_a_late_tick_skips_and_goes_on():
@@ -151,7 +156,7 @@ def test_whatever_a_part_raises_the_robot_is_stopped_and_the_error_comes_out(sta
     with pytest.raises(type(error)) as caught:
         loop.run()
     assert caught.value is error
-    assert session.backend.journal[-3:] == ["soft", "torque_off", "close"]
+    assert session.backend.journal[-2:] == ["torque_off", "close"]
     assert [fault.name for fault in loop.outcome.faults] == [type(error).__name__]
 
 
@@ -160,7 +165,7 @@ def test_torque_off_is_repeated_until_it_is_read_back():
     session.backend.verify_after = 3
     loop, _ = run(session)
     loop.run()
-    assert session.backend.journal[-5:] == ["soft", *["torque_off"] * 3, "close"]
+    assert session.backend.journal[-4:] == [*["torque_off"] * 3, "close"]
 
 
 def test_torque_that_never_goes_off_is_an_error_and_the_port_is_closed():
@@ -198,7 +203,7 @@ def test_a_fall_ends_the_run_with_torque_off():
     assert outcome.fell
     assert outcome.faults[0].time_s == pytest.approx(61 / 300)
     assert ticks.ticks[-1] == 61
-    assert session.backend.journal[-3:] == ["soft", "torque_off", "close"]
+    assert session.backend.journal[-2:] == ["torque_off", "close"]
 
 
 def test_nothing_is_armed_while_a_sensor_is_silent():
@@ -244,7 +249,7 @@ def test_a_signal_stops_the_robot_at_the_end_of_the_tick(number, error):
     ]
     sitting = session.description.sit.joints["left_knee"]
     assert session.backend.written[-1][3] == pytest.approx(sitting)
-    assert session.backend.journal[-3:] == ["soft", "torque_off", "close"]
+    assert session.backend.journal[-2:] == ["torque_off", "close"]
     assert signal.getsignal(number) is before
 
 
@@ -261,4 +266,4 @@ def test_a_second_signal_does_not_wait_for_a_controller_that_hangs():
     loop, _ = run(session)
     with pytest.raises(KeyboardInterrupt):
         loop.run()
-    assert session.backend.journal[-3:] == ["soft", "torque_off", "close"]
+    assert session.backend.journal[-2:] == ["torque_off", "close"]

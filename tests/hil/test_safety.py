@@ -177,6 +177,7 @@ def test_a_sag_shorter_than_a_tenth_of_a_second_is_told_and_a_longer_one_stops()
     assert watched.told == [("supply", "low voltage", "none")]
     watched.frame.joint_voltage[:] = 7.0
     assert watched.tick(45) is Action.SIT
+    assert watched.told[1:] == [("supply", "low voltage", "soft_stop")]  # what ended it is told
 
 
 def test_a_servo_that_reports_an_error_stops_the_robot():

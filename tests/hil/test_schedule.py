@@ -98,3 +98,20 @@ def test_each_ball_is_thrown_once_and_in_time():
     thrown = [operator.ball(time_s) for time_s in (0.9, 1.0, 1.1, 2.5, 3.0)]
     assert [None if ball is None else ball.mass for ball in thrown] == [None, 5.0, None, 1.0, None]
     assert thrown[1].velocity == (0.0, -3.0, 0.0)
+
+
+def test_a_liquid_changes_linearly_and_is_told_to_the_controller():
+    operator = Operator(
+        Schedules(water=((0.0, 0.0), (10.0, 1.0)), density=((4.0, 1200.0), (6.0, 1000.0)),
+                  viscosity=((0.0, 3.0),)), 0.5,
+    )  # fmt: skip
+    assert operator.medium(-1.0) == (0.0, 1000.0, 3.0)
+    assert operator.medium(5.0) == pytest.approx((0.5, 1100.0, 3.0))
+    reference = operator.reference(2.0)
+    liquid = (reference.water_level, reference.liquid_density, reference.liquid_viscosity)
+    assert liquid == pytest.approx((0.2, 1100.0, 3.0))
+    assert operator.medium(99.0) == (1.0, 1000.0, 3.0)
+
+
+def test_without_a_level_the_controller_hears_of_dry_land():
+    assert Operator(Schedules(), 0.5).reference(3.0).water_level == 0.0

@@ -5,6 +5,8 @@ import pytest
 from controller.walking.alteration import Alteration, AlterationConfig
 from controller.walking.step_average import StepAverage
 
+from .conftest import HumanWalk
+
 CONFIG = AlterationConfig(gain=0.1, error_limit=0.3, bounds=(-0.12, 0.05), start=-0.06)
 
 
@@ -45,3 +47,12 @@ def test_step_average_starts_afresh():
     assert average.finish() == 1.5
     average.add(4.0)
     assert average.finish() == 4.0
+
+
+def test_a_walk_tells_its_alteration():
+    walk = HumanWalk()
+    walk.tick()
+    start = walk.description.walking["alteration"]["start"]
+    assert walk.walker.status.alteration == start
+    walk.walk(2.0)
+    assert walk.walker.status.alteration != start

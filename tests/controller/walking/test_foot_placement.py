@@ -63,3 +63,13 @@ def test_late_take_over_does_not_make_the_foot_jump():
     placement = FootPlacement(CONFIG, 0.93, 9.81)
     assert placement.share(0.9, 0.88) < 0.4
     assert placement.share(0.98, 0.88) == pytest.approx(1.0)
+
+
+def test_the_lead_in_water_goes_with_level_speed_and_liquid():
+    config = CONFIG.model_copy(update={"drag_lag": ((0.0, 0.0), (0.5, 0.4), (1.0, 0.2))})
+    placement = FootPlacement(config, 0.93, 9.81)
+    assert placement.lead(0.5, 0.5, 1.0) == pytest.approx(0.4 * 0.125)
+    assert placement.lead(0.5, 0.25, 1.0) == pytest.approx(0.2 * 0.125)
+    assert placement.lead(-0.5, 0.75, 1.5) == pytest.approx(-1.5 * 0.3 * 0.125)
+    assert placement.lead(0.5, 0.0, 1.0) == 0.0
+    assert FootPlacement(CONFIG, 0.93, 9.81).lead(0.7, 1.0, 1.0) == 0.0

@@ -1,4 +1,4 @@
-"""The coupling matrix of implicit PD against differences of the law itself."""
+"""Implicit PD, and the linearised law behind it against differences of the law itself."""
 
 import numpy as np
 import pytest
@@ -6,6 +6,7 @@ import pytest
 from controller.robot_model import RobotModel
 from controller.walking.implicit_pd import ImplicitPd
 from controller.walking.joint_groups import JointGroups
+from controller.walking.linear_law import LinearLaw
 from controller.walking.pose_tracking import PoseTracking
 from controller.walking.root_balance import hip_moment
 
@@ -37,16 +38,17 @@ class Law:
         return self.groups.project(torques[:-1], self.robot.joint_axes)
 
 
-def test_coupling_is_the_derivative_of_the_law(human, human_config):
-    """With lead 0 the law's only velocity term is −A·q̇: C/h must be A when there is no kp."""
+def test_linear_law_is_the_derivative_of_the_law(human, human_config):
+    """With lead 0 the law's only velocity term is −A·q̇: the matrix of kd is A without kp."""
     config = human_config.model_copy(
         update={"gains": {300: {k: (0.0, d) for k, (_, d) in human_config.gains[300].items()}}}
     )
     law = Law(human, config)
     state = random_state(human, seed=5, speed=0.1)
     base = law.torques(state)
-    implicit = ImplicitPd(law.robot, law.groups, law.tracking, law.trunk, H)
-    coupling = implicit._law_coupling(law.hips, SHARES, True)[law.robot.dof_addresses] / H
+    linear = LinearLaw(law.robot, law.groups, law.tracking, law.trunk)
+    matrix = linear.matrix(law.tracking.damping[:, None, :], law.hips, SHARES)
+    coupling = matrix[law.robot.dof_addresses]
     step = 1e-3
     for joint, dof in enumerate(law.robot.dof_addresses):
         state.joint_velocity[joint] += step

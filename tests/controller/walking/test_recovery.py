@@ -1,6 +1,8 @@
 """Recovery steps: when they begin, what ends them, when the learned curve is forgotten."""
 
-from controller.walking.recovery import Recovery, RecoveryConfig
+import pytest
+
+from controller.walking.recovery import AdaptiveThreshold, Recovery, RecoveryConfig
 
 CONFIG = RecoveryConfig(threshold=0.35, reset_after=5)
 
@@ -40,3 +42,31 @@ def test_turn_is_no_disturbance():
     recovery = Recovery(CONFIG)
     step(recovery, (1.0, 0.5), (0.5, 0.0), turning=True)
     assert not recovery.active
+
+
+def test_learning_starts_again_with_the_curve_forgotten():
+    recovery = Recovery(CONFIG)
+    frozen = []
+    for _ in range(8):
+        step(recovery, (1.0, 0.0), (0.5, 0.0))
+        frozen.append(recovery.frozen)
+    assert recovery.active
+    assert frozen == [True] * 5 + [False] * 3
+
+
+def test_an_adaptive_threshold_tightens_once_the_curve_has_converged():
+    adaptive = AdaptiveThreshold(factor=3.0, least=0.1, converged=0.2, memory=0.5)
+    recovery = Recovery(CONFIG.model_copy(update={"adaptive": adaptive}))
+    step(recovery, (0.8, 0.0), (0.5, 0.0))  # 0.3: still learning
+    step(recovery, (0.6, 0.0), (0.5, 0.0))
+    assert recovery.threshold == 0.35
+    step(recovery, (0.59, 0.0), (0.5, 0.0))  # converged at 0.09
+    assert recovery.threshold == pytest.approx(0.27)
+    step(recovery, (0.8, 0.0), (0.5, 0.0))
+    assert recovery.active, "0.3 is a disturbance now, and was none before"
+    step(recovery, (0.5, 0.0), (0.5, 0.0))
+    assert not recovery.active
+    assert recovery.threshold == 0.35, "a recovery begins anew"
+    for _ in range(4):
+        step(recovery, (0.51, 0.0), (0.5, 0.0))
+    assert recovery.threshold == pytest.approx(0.1), "never below the least"

@@ -62,7 +62,7 @@ def test_time_to_a_capture_point_inverts_the_prediction():
     ("capture", "expected"),
     [
         (0.030, "nominal"),
-        (0.036, "sooner"),
+        (0.038, "sooner"),
         (0.022, "later"),
     ],
 )

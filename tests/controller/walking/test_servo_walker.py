@@ -37,9 +37,10 @@ def test_it_walks_backwards_and_sideways():
 
 def test_lateral_speed_is_corrected_once_a_stride():
     """The integral over a stride: two steps, for one of them always sways the other way."""
-    bench = ServoBench(minibiped([("lateral_alteration.bounds", [-0.05, 0.05])]))
+    wrong = [("lateral_alteration.bounds", [-0.05, 0.05]), ("lateral_alteration.start", 0.02)]
+    bench = ServoBench(minibiped(wrong))
     bench.stand(0.5)
-    reference, offset, moved = Reference(speed=0.0, lateral=0.08), 0.0, []
+    reference, offset, moved = Reference(speed=0.0, lateral=0.08), 0.02, []
     for _ in range(5 * 300):
         bench.run(reference)
         step = bench.walker._step
@@ -50,8 +51,8 @@ def test_lateral_speed_is_corrected_once_a_stride():
     steps = [number for number, _ in moved]
     assert len(steps) > 4
     assert np.all(np.diff(steps) == 2)
-    # The walk is faster than asked without it: the pivot moves towards where the body goes.
-    assert offset > 0.0
+    # With that pivot the walk is slower than asked.
+    assert offset < 0.01
 
 
 def test_it_turns_to_the_commanded_heading():
@@ -92,7 +93,7 @@ def test_a_loaded_stance_foot_is_flat():
         ("balance.torque_gain", 0.0),
         ("placement.gain_x", 0.4),
         ("swing.height", 0.002),
-        ("latency", 0.05),
+        ("latency", 0.08),
     ],
     ids=lambda change: change[0],
 )
@@ -160,7 +161,33 @@ def test_a_robot_with_wrong_joint_zeros_learns_its_soles_and_its_com():
     assert np.abs(step.sole_trim.value).max() > 0.003
     assert np.abs(step.trim.value).max() > 0.0005
     with_trim = step.landing
-    step.trim.value = [(0.0, 0.0), (0.0, 0.0)]
+    step.trim.value = [0.0, 0.0]
     step.gait.phase = 0.5
     bench.run(Reference(speed=0.1))
     assert step.landing != pytest.approx(with_trim, abs=2e-4)
+
+
+def test_a_sideways_fall_leaves_the_swing_foot_the_time_that_its_way_takes():
+    bench = ServoBench(minibiped())
+    step = bench.walker._step
+    while not (step.gait.steps > 10 and 0.2 < step.gait.phase < 0.3):
+        bench.run(Reference(speed=0.25))
+    x, _ = step.state.capture
+    step.state.capture = (x, 0.05 * step.gait.stance_sign)  # beyond the outside of the foot
+    ankles = bench.walker._model.ankles
+    stands, goal = ankles[step.gait.swing][0] - ankles[step.gait.stance][0], step.landing[0]
+    time = step._set_phase_rate(0.0)
+    assert time == pytest.approx((goal - stands) / bench.walker.config.timing.swing_speed, abs=2e-3)
+    assert time > bench.walker.config.timing.min_time - step.gait.time_in_step + 0.01
+
+
+def test_the_governor_counts_no_inertia_twice_that_was_learnt():
+    bench = ServoBench(minibiped())
+    for _ in range(5 * 300):
+        bench.run(Reference(speed=0.2))
+    walker = bench.walker
+    told = np.array([walker._governor._limits[joint][0] for joint in (2, 4)])
+    known = walker._inertia.at_rest(walker._rest)
+    for leg in range(2):
+        learnt = told + walker._load.inertia[leg][[0, 2]]
+        np.testing.assert_allclose(learnt, [known[2], known[4]], rtol=0.14)

@@ -1,6 +1,8 @@
 """Virtual robots behind their ports, on the virtual clock, for commands run in this process."""
 
 import shutil
+from contextlib import nullcontext
+from types import SimpleNamespace
 
 import pytest
 import yaml
@@ -9,13 +11,16 @@ from typer.testing import CliRunner
 from drivers.assembly import expected_servos
 from drivers.dynamixel.control_table import Register
 from hil.cli.main import app
+from hil.miswire import parse_miswires
 from hil.robot_files import find_robot_file, load_robot
 from sim_backends.plant import Plant
+from sim_backends.virtual.hand import Hand
+from sim_backends.virtual.miswiring import built_wrongly, mount_wrongly, plug_wrongly
 from sim_backends.virtual.motors import nominal_motors
 from sim_backends.virtual.robot import VirtualRobot
 
 RATE = 300
-CLOCKED = ("check", "jog", "monitor", "relax", "scan", "setup")
+CLOCKED = ("calibrating", "check", "jog", "monitor", "relax", "scan", "setup")
 
 
 class Workbench:
@@ -38,6 +43,11 @@ class Workbench:
             for word in ("--port", f"{name}={self.url(other)}")
         ]
 
+    def calibrate(self, what, *arguments, file="minibiped"):
+        """`stride calibrate` with the virtual robot's own hand."""
+        command = ("calibrate", what, file, *self.ports(), "--ports", self.ports_file)
+        return self.stride(*command, "--by-hand-of-emulator", *arguments)
+
     def stride(self, *arguments, stdin=""):
         return CliRunner().invoke(app, list(map(str, arguments)), input=stdin)
 
@@ -54,21 +64,31 @@ class Workbench:
 
 
 @pytest.fixture
-def make_bench(monkeypatch):
+def make_bench(monkeypatch, tmp_path):
     benches = []
 
-    def make(*overrides, file="minibiped"):
-        description = load_robot(file, ("plant.draws=null", "plant.substeps=2", *overrides))
+    def make(*overrides, file="minibiped", miswire=()):
+        described = load_robot(file, ("plant.draws=null", "plant.substeps=2", *overrides))
+        wrong = parse_miswires(miswire, described)
+        description = built_wrongly(described, wrong)
         plant = Plant(description, RATE, 0, nominal_motors(description))
         robot = VirtualRobot(description, plant, 0, RATE)
         robot.start()
+        mount_wrongly(robot, wrong)
+        plug_wrongly(robot.port_urls, wrong)
         for bus in description.buses:
             for servo in expected_servos(description, bus):
                 robot.servos[servo.joint].registers[Register.SHUTDOWN] = int(servo.shutdown)
         for module in CLOCKED:
             monkeypatch.setattr(f"hil.bringup.{module}.MonotonicClock", lambda: robot.clock)
         benches.append(robot)
-        return Workbench(robot)
+        workbench = Workbench(robot)
+        workbench.ports_file = tmp_path / "ports.json"
+        workbench.ports_file.write_text('{"control": "here"}', encoding="utf-8")
+        hand = Hand(robot)
+        world = SimpleNamespace(do_by_hand=lambda request: hand.do(request)["seconds"])
+        monkeypatch.setattr("hil.compose.virtual_hand", lambda _: nullcontext(world))
+        return workbench
 
     yield make
     for robot in benches:
@@ -79,12 +99,12 @@ def make_bench(monkeypatch):
 def calibrated(make_bench, tmp_path):
     """A robot whose file names a calibration, true but for what a test changes."""
 
-    def make(**changes):
+    def make(miswire=(), **changes):
         folder = tmp_path / "robot"
         shutil.copytree(find_robot_file("minibiped").parent, folder)
         file = folder / "minibiped.yaml"
         file.write_text(file.read_text(encoding="utf-8") + "\ncalibration: mine.yaml\n")
-        bench = make_bench(file=str(file))
+        bench = make_bench(file=str(file), miswire=miswire)
         content = {
             "robot": "minibiped",
             "provenance": {"date": "2026-01-02", "method": "ideal"},
@@ -92,7 +112,7 @@ def calibrated(make_bench, tmp_path):
             **changes,
         }
         (folder / "mine.yaml").write_text(yaml.safe_dump(content), encoding="utf-8")
-        bench.file = str(file)
+        bench.file, bench.path = str(file), folder / "mine.yaml"
         return bench
 
     return make

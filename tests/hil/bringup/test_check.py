@@ -7,6 +7,7 @@ import pytest
 
 from drivers.dynamixel.control_table import HardwareError, Register
 from drivers.dynamixel.servo_models import find_servo_model
+from hil.robot_files import load_robot
 
 
 def findings(bench, *arguments, **ports):
@@ -185,6 +186,31 @@ def test_a_calibration_that_cannot_be_is_refused(calibrated, changes, sentence):
     assert code == 1
     assert len(said) == 1
     assert said[0].startswith(sentence)
+
+
+def test_a_calibration_that_is_not_there_or_not_whole_is_refused(calibrated):
+    record = {"date": "2026-01-02", "method": "by hand"}
+    bench = calibrated(measured={"imu": record, "joints": {**record, "parts": {}}})
+    assert findings(bench)[1][0].startswith("calibration: not measured yet: joint left_hip_yaw")
+    bench.path.unlink()
+    assert findings(bench) == (
+        1,
+        ["calibration: there is no file mine.yaml yet: stride calibrate joints, imu, feet, lean"],
+    )
+
+
+def test_values_with_which_nobody_leant_are_remarked(calibrated):
+    record = {"date": "2026-01-02", "method": "by hand"}
+    parts = dict.fromkeys(load_robot("minibiped").joint_names, "XM430-W350")
+    bench = calibrated(
+        measured={"imu": record, "joints": {**record, "parts": parts}},
+        joint_ranges={"left_hip_yaw": [-0.3, 0.8]},
+    )
+    result = bench.stride("check", bench.file, *bench.ports(), "--json")
+    assert result.exit_code == 0, result.output
+    said = [row["what"] for row in json.loads(result.stdout)["findings"]]
+    assert said[0] == "nobody has leant the robot with these values"
+    assert said[1].startswith("is kept within -17.2° to 45.8° by its calibration")
 
 
 def test_a_slow_adapter_is_refused(bench, monkeypatch):

@@ -108,3 +108,26 @@ def test_what_emulate_prints_is_what_ports_takes(robot, tmp_path):
     last = json.loads(result.stdout.splitlines()[-1])
     assert len(last["joints"]) == 12
     assert any(joint["position_deg"] is not None for joint in last["joints"])
+
+
+def test_a_calibration_that_is_broken_off_leaves_the_file_as_it_was(robot, tmp_path):
+    ports, out = tmp_path / "ports.json", tmp_path / "mine.yaml"
+    ports.write_text(json.dumps({"buses": robot.port_urls}), encoding="utf-8")
+    old = "robot: minibiped\nprovenance: {date: 2026-01-02, method: by hand}\n"
+    out.write_text(old, encoding="utf-8")
+    process = subprocess.Popen(
+        [*STRIDE, "calibrate", "imu", "--ports", str(ports), "--out", str(out)],
+        stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    try:
+        assert process.stdout.readline().endswith("and still [Enter]\n")
+        process.stdin.write("\n")
+        process.stdin.flush()
+        assert process.stdout.readline().startswith("Tilt the torso forward")
+        process.send_signal(signal.SIGINT)
+        assert process.wait(PATIENCE_S) == 130
+    finally:
+        process.kill()
+        process.communicate()
+    assert out.read_text(encoding="utf-8") == old
+    assert sorted(tmp_path.iterdir()) == [out, ports]

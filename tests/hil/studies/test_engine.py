@@ -13,6 +13,7 @@ import pytest
 from study_fakes import numbers
 
 from hil.errors import InputError, StrideError
+from hil.studies.folder import StudyFolder
 from hil.studies.run import run_study
 
 PROGRAM = Path(__file__).parent / "study_fakes.py"
@@ -147,6 +148,17 @@ def test_a_folder_of_another_study_is_refused(tmp_path):
         with pytest.raises(InputError, match=difference):
             run_study(other, tmp_path / "out", jobs=1)
     assert ran(tmp_path / "log") == [0, 1]
+
+
+def test_a_study_without_results_gives_way_to_another(tmp_path):
+    with StudyFolder(numbers(tmp_path / "log", count=2), tmp_path / "out"):
+        pass
+    run = run_study(numbers(tmp_path / "log", count=1), tmp_path / "out", jobs=1)
+    assert run.result.rows[0]["square"] == 0
+    (tmp_path / "else").mkdir()
+    (tmp_path / "else" / "study.json").write_text('{"title": "mine"}')
+    with pytest.raises(InputError, match="other study, robot"):
+        run_study(numbers(tmp_path / "log", count=1), tmp_path / "else", jobs=1)
 
 
 def test_a_folder_of_something_else_is_refused_and_left_alone(tmp_path):

@@ -99,9 +99,15 @@ def robot(make_plant):
     """A virtual robot on the lockstep clock, its lines registered with pyserial."""
     robots = []
 
-    def make(*overrides, seed=0, rate=300):
+    def make(*overrides, seed=0, rate=300, delay_us=0):
+        """`delay_us`: of the foot boards."""
         plant = make_plant(*overrides, seed=seed, rate=rate)
-        made = VirtualRobot(plant.description, plant, seed, rate)
+        boards = {
+            name: board.model_copy(update={"delay_us": delay_us}) if board.kind == "foot" else board
+            for name, board in plant.description.boards.items()
+        }
+        description = plant.description.model_copy(update={"boards": boards})
+        made = VirtualRobot(description, plant, seed, rate)
         made.start()
         robots.append(made)
         return made

@@ -44,6 +44,16 @@ def test_frames_come_at_the_grid_rate_nearest_to_the_board_s(robot, rate, expect
     assert np.diff(sequence).tolist() == [1] * (len(sequence) - 1)
 
 
+def test_a_board_holds_its_frames_back_for_the_delay_that_the_robot_file_tells(robot):
+    """The foot board's filter takes 820 us (docs/foot-board.md)."""
+    arrivals = {}
+    for delay_us in (0, 820):
+        made = robot(*NOISELESS, delay_us=delay_us)
+        arrivals[delay_us] = [arrival for arrival, _ in listen(made, "left_foot", 0.05)][:20]
+    late = np.array(arrivals[820]) - np.array(arrivals[0])
+    assert set(late.tolist()) == {820_000}
+
+
 def test_calibrated_counts_are_the_corner_forces(robot):
     made = standing(robot(*NOISELESS))
     for foot, side in enumerate(("left", "right")):

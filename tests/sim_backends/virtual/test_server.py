@@ -97,6 +97,17 @@ def test_the_remote_world_is_the_robot_s(world):
     assert truth.base_position[2] > height + 0.1
 
 
+def test_the_remote_world_can_be_flooded(world):
+    """Two metres of a liquid as heavy as mercury lift the robot off its feet."""
+    height = world.truth().base_position[2]
+    world.set_support(False)
+    world.set_medium(2.0, 13_600.0, 1.0)
+    give_up = time.monotonic() + 10.0
+    while world.truth().base_position[2] < height + 0.1:
+        assert time.monotonic() < give_up, "it stays on the floor"
+        time.sleep(0.05)
+
+
 def test_virtual_time_keeps_up_with_real_time(world):
     first, start = world.truth().time_ns, time.monotonic_ns()
     time.sleep(0.5)

@@ -180,6 +180,39 @@ def test_any_packet_on_the_bus_feeds_the_watchdog_and_torque_off_needs_none(robo
     assert limp.registers[Register.BUS_WATCHDOG] == 1
 
 
+@pytest.mark.parametrize("first", [1, 2], ids=["its own", "a neighbour's"])
+def test_a_watchdog_that_is_shortened_while_armed_trips_after_its_new_time(robot, first):
+    made = robot(*QUIET)
+    client = Client(made)
+    client.ask(protocol.encode_write(first, 98, b"\x64"), 11)  # 2 s: a look is planned for then
+    for address, value in ((64, b"\x01"), (98, b"\x02")):
+        client.ask(protocol.encode_write(1, address, value), 11)
+    made.clock.sleep_until_ns(made.clock.now_ns() + 41_000_000)
+    assert made.servos["left_hip_yaw"].registers[Register.BUS_WATCHDOG] == 255
+
+
+def test_the_journal_tells_when_packets_were_heard_and_torque_went(robot):
+    made = robot(*QUIET)
+    journal = made.journal(made.clock.now_ns)
+    client = Client(made)
+    for address, value in ((98, b"\x02"), (64, b"\x01")):
+        client.ask(protocol.encode_write(1, address, value), 11)
+    heard = made.clock.now_ns()
+    client.port.write(protocol.encode_instruction(1, 1))
+    made.clock.sleep_until_ns(heard + 100_000_000)
+    client.port.read(client.port.in_waiting)
+    client.ask(protocol.encode_write(1, 64, b"\x00"), 11)
+    told = journal.content()
+    arrival = heard + USB_NS + byte_ns(10)
+    assert told["packets"][2] == (arrival, "left_leg", "heard")
+    assert [event[1:] for event in told["deeds"]] == [
+        ("left_hip_yaw", "torque on"),
+        ("left_hip_yaw", "stopped"),
+        ("left_hip_yaw", "torque off"),
+    ]
+    assert told["deeds"][1][0] == arrival + 40_000_000
+
+
 def test_a_line_is_held_by_one_and_known_by_name(robot):
     made = robot()
     first = Client(made)

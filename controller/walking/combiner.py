@@ -1,0 +1,79 @@
+"""The combiner of simple controllers: which gait styles make the step to come, and how much each.
+
+Seed 003_73fecd8ec8927aad, section 5.1. A simple controller, here a style, belongs to one speed and
+one liquid level and names only the trajectories in which it differs from the standard controller;
+it need not walk by itself, since balance is the pendulum model's.
+"""
+
+from bisect import bisect_right
+from collections.abc import Sequence
+from typing import Literal
+
+from pydantic import Field
+
+from hil.validation import Config
+
+Law = Literal["square", "symmetric"]
+KnotList = tuple[tuple[float, float], ...]
+
+
+class StyleConfig(Config):
+    """One simple controller."""
+
+    speed: float
+    """Sagittal speed that it is for [m/s]."""
+    water: float = Field(default=0.0, ge=0)
+    """Level of the liquid that it is for [m]."""
+    poses: dict[str, KnotList] = {}
+    """Trajectories that differ from the standard controller, by their names in `key_poses`, and
+    `swing_ahead` and `swing_aside`: the swing ankle from its hip along and across the heading
+    until the pendulum takes it over [m], of a step on the left foot."""
+
+
+def share(value: float, low: float, high: float, law: Law) -> float:
+    """R, the part of the upper of two neighbours: 0 at `low`, 1 at `high`.
+
+    With a = (value − low)/(high − low): `square` is a² as printed in the seed, which changes its
+    slope at every reference; `symmetric` is a²/(a² + (1 − a)²), with zero slope at both ends (the
+    first author's stored code).
+    """
+    a = (value - low) / (high - low)
+    if law == "square":
+        return a * a
+    return a * a / (a * a + (1.0 - a) * (1.0 - a))
+
+
+def neighbours(value: float, marks: Sequence[float], law: Law) -> list[tuple[int, float]]:
+    """Indices and parts of the rising marks around a value; the nearest alone outside them."""
+    above = bisect_right(marks, value)
+    if above == 0:
+        return [(0, 1.0)]
+    if above == len(marks):
+        return [(above - 1, 1.0)]
+    part = share(value, marks[above - 1], marks[above], law)
+    return [(above - 1, 1.0 - part), (above, part)] if part > 0.0 else [(above - 1, 1.0)]
+
+
+class Combiner:
+    """Parts of the styles at a speed and a level: first over speed at each level, then over level.
+
+    f = f_1·(1 − R) + f_2·R of the two nearest styles, by speed among those of one level, and then
+    of the two nearest levels in the same way.
+    """
+
+    def __init__(self, styles: Sequence[StyleConfig], law: Law) -> None:
+        self._law: Law = law
+        self._levels = sorted({style.water for style in styles})
+        self._rows = [
+            sorted((style.speed, index) for index, style in enumerate(styles) if style.water == at)
+            for at in self._levels
+        ]
+
+    def parts(self, speed: float, level: float) -> dict[int, float]:
+        """Index of every style that takes part and its part; the parts sum to 1."""
+        result: dict[int, float] = {}
+        for row, part in neighbours(level, self._levels, self._law):
+            marks = [mark for mark, _ in self._rows[row]]
+            for place, within in neighbours(speed, marks, self._law):
+                result[self._rows[row][place][1]] = part * within
+        return result

@@ -1,0 +1,1 @@
+"""The offline search of the studies: CMA-ES over walks, in parallel, kept across interruptions."""

@@ -1,0 +1,1 @@
+"""Simple hydrodynamics of a body that is partly under water."""
