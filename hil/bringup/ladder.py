@@ -1,7 +1,7 @@
 """The ladder of a real robot: on the ground walks only who has walked in the air.
 
 Passed hoisted walks are on record beside the calibration file, in `NAME.rungs.json`: they belong to
-one robot as it was calibrated, wherever runs are kept (docs/decisions/0007-ladder.md).
+one robot as it was calibrated, wherever runs are kept (docs/decisions/0007-rungs-on-record.md).
 """
 
 import hashlib
