@@ -221,7 +221,9 @@ def _frame(bench, path):
     """What the driver measures with a calibration, robot at rest."""
     calibration = load_calibration(path)
     feet = {side: _plain_foot() for side in ("left", "right")} if not calibration.feet else {}
-    calibration = calibration.model_copy(update={"feet": {**feet, **calibration.feet}})
+    # The driver refuses a robot that is measured in part; here only the part is looked at.
+    whole = {"feet": {**feet, **calibration.feet}, "measured": {}}
+    calibration = calibration.model_copy(update=whole)
     backend = BusBackend(
         bench.description, bench.robot.clock, RATE, bench.robot.port_urls, calibration,
         GainMapping(bench.description, calibration),
