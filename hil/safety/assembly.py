@@ -32,7 +32,9 @@ def make_supervisor(
     """
     sit_ns = round(sit_time_s(description) * 1e9)
     way_out = WayOut(sit_ns, round(LAND_S * 1e9) if sit_ns else 0)
-    monitors: list[Monitor] = [SilenceMonitor(description), BoardMonitor(description)]
+    # A pause comes first: it explains whatever else is seen in its tick.
+    monitors: list[Monitor] = [PauseMonitor()] if paced else []
+    monitors += [SilenceMonitor(description), BoardMonitor(description)]
     if description.actuation == "servo":
         monitors += [
             ErrorMonitor(description),
@@ -43,6 +45,4 @@ def make_supervisor(
             FeetMonitor(description, rate_hz, weight_n, feet),
             ClampMonitor(),
         ]
-    if paced:
-        monitors.append(PauseMonitor())
     return Supervisor(monitors, way_out)

@@ -324,3 +324,12 @@ def test_a_fall_that_begins_after_torque_is_off_moves_nothing():
     state, action = decide(1_000, state, [], WAY_OUT)
     assert action is Action.OFF
     assert decide(1_001, state, [Event("x", "y", Severity.LAND)], WAY_OUT)[1] is Action.OFF
+
+
+def test_a_pause_is_told_before_what_it_brought():
+    watched = Watched()
+    watched.tick()
+    watched.situation.now_ns += 500_000_000
+    watched.frame.imu_age_ns = 500_000_000  # nobody asked the board meanwhile
+    watched.tick()
+    assert [name for _, name, _ in watched.told] == ["paused 503 ms", "silent"]
