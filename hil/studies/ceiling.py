@@ -15,7 +15,7 @@ from hil.studies.figures_gain_ceilings import draw_range_ceilings
 from hil.studies.gain_sets import gain_overrides, scaled, stored_sets
 from hil.studies.range_file import RateGains
 from hil.studies.study import Result, RunCases, Study, StudyResult, Table
-from hil.studies.titles import title
+from hil.studies.titles import number, title
 from hil.studies.vibration import VibrationCase, vibration_of
 
 BELOW, ABOVE = 0.9, 1.15
@@ -146,9 +146,9 @@ def _table(head: str, rows: list[Result]) -> Table:
             str(row["rate_hz"]),
             row["joint_group"],
             str(row["gain_set"]),
-            *(_number(row[key]) for key in ("kp", "kd", "factor", "factor_typical")),
-            _number(row["kp_ceiling"]),
-            _number(row["kd_ceiling"]),
+            *(number(row[key], ".3g") for key in ("kp", "kd", "factor", "factor_typical")),
+            number(row["kp_ceiling"], ".3g"),
+            number(row["kd_ceiling"], ".3g"),
             _walked(row, "below"),
             _walked(row, "above"),
         )
@@ -158,10 +158,6 @@ def _table(head: str, rows: list[Result]) -> Table:
         f"{head}: largest factor on gains, and vibration [rad/s] at {BELOW:g} and {ABOVE:g} of it"
     )
     return Table(subject, heads, lines)
-
-
-def _number(value: float | None) -> str:
-    return "–" if value is None else f"{value:.3g}"
 
 
 def _walked(row: Result, where: str) -> str:

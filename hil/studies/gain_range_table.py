@@ -4,6 +4,7 @@ from hil.description import RobotDescription
 from hil.studies.gain_algorithm import Extreme, RateRange
 from hil.studies.gain_sets import sides_of, total_of
 from hil.studies.study import Result, Table
+from hil.studies.titles import number
 
 EMPTY: Result = dict.fromkeys(
     (
@@ -52,8 +53,8 @@ def range_table(title: str, rows: list[Result]) -> Table:
     lines = [
         (
             str(rate),
-            _number(row["sum_min"]),
-            _number(row["sum_max"]),
+            number(row["sum_min"], ".0f"),
+            number(row["sum_max"], ".0f"),
             str(row["evaluations"]),
             str(row["ended_min"]),
             str(row["ended_max"] or "–"),
@@ -82,7 +83,3 @@ def _joint(found: RateRange, joint: str, description: RobotDescription) -> Resul
         if side is not None and side.last.valid:
             row[f"kp_{name}"], row[f"kd_{name}"] = side.last.gains[joint]
     return row
-
-
-def _number(value: float | None) -> str:
-    return "–" if value is None else f"{value:.0f}"

@@ -12,7 +12,7 @@ from hil.schedule import Push
 from hil.studies.coronal_cycle import FROUDE_SPEED, coronal_cycle
 from hil.studies.figures_rates import draw_rates
 from hil.studies.study import Case, Result, RunCases, Study, StudyResult, Table
-from hil.studies.titles import outcome, title
+from hil.studies.titles import number, outcome, title
 from hil.studies.walks import PROBE_S, Walk, finite, lasting, mean_step_time, mean_velocity, walk
 
 Scenario = Literal["straight", "cycle", "pushed"]
@@ -174,4 +174,4 @@ def seed_pushes(case: RateCase, duration_s: float) -> tuple[Push, Push]:
 def _cell(row: Result) -> str:
     if row["error"] or row["ending"]:
         return outcome(row)
-    return "–" if row["speed_mps"] is None else f"{row['speed_mps']:.3f}"
+    return number(row["speed_mps"], ".3f")

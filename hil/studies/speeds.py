@@ -10,7 +10,7 @@ from hil.robot_facts import robot_facts
 from hil.robot_files import load_robot
 from hil.studies.figures_speeds import draw_speeds
 from hil.studies.study import Case, Result, RunCases, Study, StudyResult, Table
-from hil.studies.titles import outcome, title
+from hil.studies.titles import number, outcome, title
 from hil.studies.walks import Walk, finite, lasting, mean_velocity, walk
 
 SAGITTAL_FROUDE = (-0.0662, 0.0, 0.0662, 0.1159, 0.1655, 0.2317, 0.2648, 0.3310)
@@ -63,11 +63,11 @@ class SpeedStudy(Study):
         lines = [
             (
                 f"{row['target_mps']:.2f}",
-                _speed(row["speed_mps"]),
+                number(row["speed_mps"], ".3f"),
                 f"{row['target_coronal_mps']:.2f}",
-                _speed(row["coronal_mps"]),
+                number(row["coronal_mps"], ".3f"),
                 str(row["steps"]),
-                "–" if row["disequilibrium_pct"] is None else f"{row['disequilibrium_pct']:.1f}",
+                number(row["disequilibrium_pct"], ".1f"),
                 outcome(row),
             )
             for row in rows
@@ -110,10 +110,6 @@ def reach_speed(case: SpeedCase) -> Result:
         "ending": walked.ending,
         "stopped_s": walked.stopped_s,
     }
-
-
-def _speed(value: float | None) -> str:
-    return "–" if value is None else f"{value:.3f}"
 
 
 def default_speeds(request: RunRequest) -> tuple[tuple[float, ...], tuple[float, ...]]:

@@ -27,7 +27,7 @@ from hil.studies.stabilizer_walks import (
     walk_variant,
 )
 from hil.studies.study import Result, RunCases, Study, StudyResult, Table
-from hil.studies.titles import outcome, title
+from hil.studies.titles import number, outcome, title
 
 SOLVERS: tuple[StabilizerSolverName, ...] = get_args(StabilizerSolverName)
 MODELS = ("M1", "M2", "M3", "M4", "M5", "M6")
@@ -160,7 +160,7 @@ class StabilizerStudy(Study):
                 row["variant"],
                 row["ankle"],
                 str(row["steps"]),
-                *(_number(row[key]) for key in keys),
+                *(number(row[key], ".2f") for key in keys),
                 outcome(row),
             )
             for row in rows
@@ -191,16 +191,12 @@ def push_table(head: str, rows: list[Result], force_n: float) -> Table:
             row["variant"],
             row["ankle"],
             str(row["pushed_rate_hz"]),
-            *(_number(row[key]) for key in ("limit_pct", "iterations", "disequilibrium_pct")),
+            *(number(row[key], ".2f") for key in ("limit_pct", "iterations", "disequilibrium_pct")),
             outcome(row),
         )
         for row in rows
     ]
     return Table(f"{head}: {force_n:.0f} N to the side for {PUSH_S:g} s", heads, lines)
-
-
-def _number(value: float | None) -> str:
-    return "–" if value is None else f"{value:.2f}"
 
 
 def _add_stabilizer_time(rows: list[Result]) -> None:

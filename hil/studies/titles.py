@@ -20,3 +20,8 @@ def outcome(row: Result) -> str:
     if row.get("ending"):
         return f"{row['ending']} at {row['stopped_s']:.1f} s"
     return ""
+
+
+def number(value: float | None, spec: str) -> str:
+    """A table's cell, in the format that the column has; a dash where there is nothing."""
+    return "–" if value is None else f"{value:{spec}}"

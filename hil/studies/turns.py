@@ -11,7 +11,7 @@ from hil.request import PdName
 from hil.schedule import Point
 from hil.studies.figures_turns import draw_turns
 from hil.studies.study import Case, Result, RunCases, Study, StudyResult, Table
-from hil.studies.titles import outcome, title
+from hil.studies.titles import number, outcome, title
 from hil.studies.walks import finite, walk
 from hil.trace import Trace
 
@@ -157,7 +157,7 @@ def _table(head: str, rows: list[Result]) -> Table:
             f"{row['turn_rate_radps']:g}" if row["turn_rate_radps"] else "at once",
             f"{row['angle_deg']:g}",
             *(
-                "–" if row[key] is None else f"{row[key]:.2f}"
+                number(row[key], ".2f")
                 for key in ("time_to_95_s", "overshoot_pct", "final_error_deg")
             ),
             outcome(row),

@@ -11,7 +11,7 @@ from hil.robot_files import load_robot
 from hil.studies.figures_water import draw_water
 from hil.studies.foot_lift import foot_lift
 from hil.studies.study import Case, Result, RunCases, Study, StudyResult, Table
-from hil.studies.titles import outcome, title
+from hil.studies.titles import number, outcome, title
 from hil.studies.walks import finite, mean_velocity, walk
 
 LEVELS = (0.0, 0.2688, 0.5376, 0.8065, 1.0753)
@@ -77,9 +77,9 @@ class WaterStudy(Study):
                 f"{row['density_kgpm3']:g}",
                 f"{row['viscosity']:g}",
                 f"{row['target_mps']:.2f}",
-                _text(row["speed_mps"], 3),
-                _text(row["error_pct"], 1),
-                _text(row["lift_m"], 2),
+                number(row["speed_mps"], ".3f"),
+                number(row["error_pct"], ".1f"),
+                number(row["lift_m"], ".2f"),
                 outcome(row),
             )
             for row in rows
@@ -130,10 +130,6 @@ def reach_speed(case: WaterCase) -> Result:
         "ending": walked.ending,
         "stopped_s": walked.stopped_s,
     }
-
-
-def _text(value: float | None, digits: int) -> str:
-    return "–" if value is None else f"{value:.{digits}f}"
 
 
 def default_grid(request: RunRequest) -> tuple[tuple[float, ...], tuple[float, ...]]:
