@@ -60,9 +60,19 @@ def board_age_ns(description: RobotDescription, board: Board) -> int:
     """
     wire = wire_time_ns(_FRAME_BYTES[board.kind], board.baud)
     wait = 500_000_000 // board.rate_hz + 500 * description.noise.board_jitter_us
-    delay_us = description.noise.imu_delay_us if board.kind == "imu" else board.delay_us
-    held = 1000 * delay_us
-    return max(0, held + wait + wire + _usb_ns(description) - read_time_ns(description))
+    return max(
+        0,
+        held_ns(description, board)
+        + wait
+        + wire
+        + _usb_ns(description)
+        - read_time_ns(description),
+    )
+
+
+def held_ns(description: RobotDescription, board: Board) -> int:
+    """How old a sample is when its board sends it [ns]."""
+    return 1000 * (description.noise.imu_delay_us if board.kind == "imu" else board.delay_us)
 
 
 def _buses(description: RobotDescription) -> list[tuple[Bus, int]]:

@@ -4,14 +4,13 @@ Without a foot on the ground there is no odometry and no touch-down. What a walk
 from its own schedule.
 """
 
-import math
-
 import numpy as np
 
+from controller.estimation.rotation import about_vertical, product, yaw
 from controller.estimation.sensors import SensorEstimator
 from controller.robot_model import RobotModel
 from hil.description import RobotDescription
-from hil.interface import Estimate, Floats, SensorFrame, WalkStatus
+from hil.interface import Estimate, SensorFrame, WalkStatus
 
 LANDING_PHASE = 1.0
 """Phase of a step at which the swing foot counts as landed."""
@@ -37,7 +36,8 @@ class HangingEstimator:
     def update(self, frame: SensorFrame) -> Estimate:
         """The estimate at the frame's time. The returned object is reused by the next call."""
         estimate, model = self._sensors.update(frame), self._model
-        _turn_to_x(estimate.base_orientation)
+        orientation = estimate.base_orientation
+        orientation[:] = product(about_vertical(-yaw(orientation)), orientation)
         estimate.base_position[:] = 0.0
         estimate.base_linear_velocity[:] = 0.0
         model.set_state(estimate)
@@ -55,11 +55,3 @@ class HangingEstimator:
         estimate.foot_force[carrying] = self._corner_load
         estimate.foot_force[1 - carrying] = 0.0
         estimate.contact[carrying], estimate.contact[1 - carrying] = True, False
-
-
-def _turn_to_x(orientation: Floats) -> None:
-    """Take the yaw ψ out of an orientation (w, x, y, z): q ← (cos ψ/2, 0, 0, −sin ψ/2)·q."""
-    w, x, y, z = orientation.tolist()
-    half = -0.5 * math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
-    c, s = math.cos(half), math.sin(half)
-    orientation[:] = (c * w - s * z, c * x - s * y, c * y + s * x, c * z + s * w)

@@ -7,10 +7,9 @@ section 4.2).
 
 from collections.abc import Sequence
 
-from controller.walking.torque_config import TorqueWalkingConfig
+from controller.walking.torque_config import torque_walking_config
 from hil.description import Joint, RobotDescription
 from hil.joint_gains import GainSet, kind_of
-from hil.validation import validate
 
 
 def gains_at(description: RobotDescription, rate_hz: int, implicit: bool) -> GainSet:
@@ -22,8 +21,7 @@ def gains_at(description: RobotDescription, rate_hz: int, implicit: bool) -> Gai
     if description.actuation == "servo":
         joints = description.at_rate(rate_hz).joints
         return {kind_of(joint.name): (joint.stiffness, joint.damping) for joint in joints}
-    walking = description.walking
-    config = validate(TorqueWalkingConfig, walking, description.file, "walking")
+    config = torque_walking_config(description)
     return dict(config.gains_at(rate_hz, implicit))
 
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from controller.robot_model import RobotModel
+from controller.walking.bounds import clip
 from controller.walking.gait import Gait
 from controller.walking.heading_frame import HeadingFrame, Pair
 from controller.walking.pendulum_state import PendulumState
@@ -96,8 +97,3 @@ class Balance:
             point = model.ankles[gait.swing] - (0.0, 0.0, sole_drop)
             reactions.append(SoleForce(gait.swing, point, (1.0 - share) * force))
         return reactions
-
-
-def clip(value: float, limit: float) -> float:
-    """The value within ±limit."""
-    return max(-limit, min(value, limit))

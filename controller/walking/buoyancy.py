@@ -31,7 +31,7 @@ class BuoyancyCompensation:
         self._parts = SubmergedParts(robot.model, robot.data, robot.root_body, cell)
         self._anchors: Floats = robot.data.xanchor
         self._joints = groups.anchor_joint
-        beyond = self._parts_beyond(robot, groups)
+        beyond = groups.moves(self._parts.bodies).T.astype(float)
         legs = [groups.descends()[:, hip] for hip in groups.legs("hip")]
         self._masks = [np.where(leg[:, None], 0.0, beyond) for leg in legs]
 
@@ -48,15 +48,4 @@ class BuoyancyCompensation:
         moment -= (mask @ lift)[:, None] * self._anchors[self._joints, :2]
         result = np.zeros((len(self._joints), 3))
         result[:, 0], result[:, 1] = -moment[:, 1], moment[:, 0]
-        return result
-
-    def _parts_beyond(self, robot: RobotModel, groups: JointGroups) -> Floats:
-        """1 where a part (column) is moved by a group (row), shape (groups, parts)."""
-        parents = robot.model.body_parentid
-        result = np.zeros((len(groups), len(self._parts.bodies)))
-        for part, body in enumerate(self._parts.bodies.tolist()):
-            above = body
-            while above > 0:
-                result[groups.child == above, part] = 1.0
-                above = int(parents[above])
         return result

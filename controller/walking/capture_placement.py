@@ -1,6 +1,6 @@
 """Where the swing foot lands: the inverted pendulum's state predicted to touch-down."""
 
-from controller.walking.balance import clip
+from controller.walking.bounds import clip
 from controller.walking.heading_frame import Pair
 from controller.walking.pendulum_state import PendulumState
 from controller.walking.servo_config import PlacementConfig

@@ -15,6 +15,8 @@ from hil.validation import Config
 
 Law = Literal["square", "symmetric"]
 KnotList = tuple[tuple[float, float], ...]
+PATH = ("swing_ahead", "swing_aside")
+"""Trajectories of the swing foot that a style may have besides key poses."""
 
 
 class StyleConfig(Config):

@@ -2,12 +2,10 @@
 
 import numpy as np
 
-from controller.walking.combiner import Combiner, KnotList, StyleConfig
+from controller.walking.combiner import PATH, Combiner, KnotList, StyleConfig
 from controller.walking.key_poses import CurveTable, tabulated
 from controller.walking.torque_config import TorqueWalkingConfig
 from hil.interface import Floats
-
-PATH = ("swing_ahead", "swing_aside")
 
 
 class GaitStyles:

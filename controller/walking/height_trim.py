@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 from pydantic import Field, PositiveFloat
 
+from controller.walking.bounds import clip
 from hil.interface import Floats
 from hil.validation import Config
 
@@ -40,7 +41,7 @@ class HeightTrim:
             return
         found = _height(corners[foot], new) - _height(corners[1 - foot], old)
         bound = self.config.bound
-        error = max(-bound, min(found - self.value[foot], bound))
+        error = clip(found - self.value[foot], bound)
         self.value[foot] = max(0.0, min(self.value[foot] + self.config.gain * error, bound))
 
 

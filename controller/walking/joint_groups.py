@@ -67,10 +67,14 @@ class JointGroups:
 
     def descends(self) -> Bools:
         """Whether group a (row) is moved by group b (column), or is b, shape (groups, groups)."""
+        return self.moves(self.child)
+
+    def moves(self, bodies: Ints) -> Bools:
+        """Whether a body (row) is moved by a group (column), shape (len(bodies), groups)."""
         parents = self._robot.model.body_parentid
-        result = np.zeros((len(self), len(self)), dtype=np.bool_)
-        for row, child in enumerate(self.child):
-            body = int(child)
+        result = np.zeros((len(bodies), len(self)), dtype=np.bool_)
+        for row, start in enumerate(bodies):
+            body = int(start)
             while body > 0:
                 result[row] |= self.child == body
                 body = int(parents[body])

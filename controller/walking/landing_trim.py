@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 from pydantic import Field, PositiveFloat
 
+from controller.walking.bounds import clip
 from hil.validation import Config
 
 
@@ -40,6 +41,6 @@ class LandingTrim:
         config = self.config
         if phase < config.min_phase:
             return
-        error = max(-config.error_limit, min(error, config.error_limit))
+        error = clip(error, config.error_limit)
         learnt = self.value[foot] + config.gain * error
-        self.value[foot] = max(-config.bound, min(learnt, config.bound))
+        self.value[foot] = clip(learnt, config.bound)

@@ -14,11 +14,10 @@ from controller.walking.joint_groups import JointGroups
 from controller.walking.linear_law import LinearLaw
 from controller.walking.pose_tracking import PoseTracking
 from controller.walking.rotations import about_z
-from controller.walking.torque_config import TorqueWalkingConfig
+from controller.walking.torque_config import torque_walking_config
 from hil.description import RobotDescription
 from hil.interface import Floats
 from hil.joint_gains import GainSet, kind_of
-from hil.validation import validate
 
 
 @dataclass(slots=True)
@@ -53,7 +52,7 @@ class LinearStance:
 
     def __init__(self, description: RobotDescription) -> None:
         """Raises DescriptionError for a walking section that does not fit."""
-        config = validate(TorqueWalkingConfig, description.walking, description.file, "walking")
+        config = torque_walking_config(description)
         self._robot = robot = RobotModel(description)
         self._groups = groups = JointGroups(description, robot)
         self.rows = (*map(kind_of, groups.names), "root")

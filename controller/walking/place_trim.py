@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 from pydantic import Field, PositiveFloat
 
+from controller.walking.bounds import clip
 from hil.validation import Config
 
 SHORTEST = 0.08
@@ -66,5 +67,5 @@ class PlaceTrim:
         scale, config = self._omega**2 * time, self.config
         old = self.value[foot]
         found = self._sum / ticks - (self._last - self._first) / scale
-        error = max(-config.error_limit, min(found - old, config.error_limit))
-        self.value[foot] = max(-config.bound, min(old + config.gain * error, config.bound))
+        error = clip(found - old, config.error_limit)
+        self.value[foot] = clip(old + config.gain * error, config.bound)

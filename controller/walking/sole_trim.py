@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 from pydantic import Field, PositiveFloat
 
+from controller.walking.bounds import clip
 from controller.walking.heading_frame import Pair
 from hil.validation import Config
 
@@ -46,7 +47,5 @@ class SoleTrim:
         if ticks:
             share = self.config.gain / ticks
             pitch, roll = self.value[foot]
-            self.value[foot] = self._bounded(pitch - share * x), self._bounded(roll + share * y)
-
-    def _bounded(self, angle: float) -> float:
-        return max(-self.config.bound, min(angle, self.config.bound))
+            bound = self.config.bound
+            self.value[foot] = clip(pitch - share * x, bound), clip(roll + share * y, bound)

@@ -5,7 +5,7 @@ from typing import Literal
 from pydantic import Field, NonNegativeFloat, PositiveFloat, model_validator
 
 from controller.walking.alteration import AlterationConfig
-from controller.walking.combiner import KnotList, Law, StyleConfig
+from controller.walking.combiner import PATH, KnotList, Law, StyleConfig
 from controller.walking.command_ramp import CommandConfig
 from controller.walking.foot_placement import FootPlacementConfig
 from controller.walking.gait import GaitConfig
@@ -17,8 +17,9 @@ from controller.walking.recovery import RecoveryConfig
 from controller.walking.stabilizer.config import StabilizerConfig
 from controller.walking.take_over import TakeOverConfig
 from controller.walking.velocity_offset import VelocityOffsetConfig
+from hil.description import RobotDescription
 from hil.joint_gains import GainSet, set_for
-from hil.validation import Config
+from hil.validation import Config, validate
 
 Vector3 = tuple[float, float, float]
 
@@ -156,7 +157,7 @@ class TorqueWalkingConfig(Config):
             if set(gains) != wanted:
                 odd = ", ".join(sorted(set(gains) ^ wanted))
                 raise ValueError(f"gains.{rate}: joints missing or unknown: {odd}")
-        known = (*KeyPoses.model_fields, "swing_ahead", "swing_aside")
+        known = (*KeyPoses.model_fields, *PATH)
         for style in self.styles:
             strangers = sorted(set(style.poses) - set(known))
             if strangers:
@@ -180,3 +181,8 @@ class TorqueWalkingConfig(Config):
         if implicit:
             return self.gains[self.implicit_gain_rate]
         return self.gains[set_for(self.explicit_gain_rates, rate_hz)]
+
+
+def torque_walking_config(description: RobotDescription) -> TorqueWalkingConfig:
+    """The walking section of a description. Raises DescriptionError."""
+    return validate(TorqueWalkingConfig, description.walking, description.file, "walking")

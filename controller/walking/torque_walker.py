@@ -13,11 +13,10 @@ from controller.walking.stabilizer.config import SolverName
 from controller.walking.stabilizer.stabilizer import Stabilizer
 from controller.walking.step_planner import StepPlanner
 from controller.walking.swing_leg import LegLinks, SwingLeg
-from controller.walking.torque_config import TorqueWalkingConfig
+from controller.walking.torque_config import torque_walking_config
 from controller.walking.torque_law import TorqueLaw
 from hil.description import RobotDescription
 from hil.interface import Estimate, Floats, JointCommand, Reference, WalkStatus
-from hil.validation import validate
 
 
 class TorqueWalker:
@@ -38,7 +37,7 @@ class TorqueWalker:
         stabilizer: bool = False,
         solver: SolverName = "linear",
     ) -> None:
-        config = validate(TorqueWalkingConfig, description.walking, description.file, "walking")
+        config = torque_walking_config(description)
         dt = 1.0 / rate_hz
         self._fallen_height = config.fallen_height
         self._robot = robot = RobotModel(description)

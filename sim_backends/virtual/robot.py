@@ -9,6 +9,7 @@ import numpy as np
 from hil.description import RobotDescription
 from hil.errors import InputError
 from hil.fault_spec import FaultSpec, parse_fault
+from sim_backends.latency import held_ns
 from sim_backends.plant import Plant
 from sim_backends.sensor_models import CellErrors, ImuErrors, dead_cells
 from sim_backends.virtual import protocol_virtual
@@ -101,18 +102,17 @@ class VirtualRobot:
 
     def _make_boards(self, random: np.random.Generator) -> dict[str, SensorBoard]:
         description = self.description
-        sources: dict[str, tuple[FrameMaker, int]] = {
-            foot.board: (self.cells[side].frame, 1000 * description.boards[foot.board].delay_us)
+        sources: dict[str, FrameMaker] = {
+            foot.board: self.cells[side].frame
             for side, foot in description.feet.items()
             if foot.board is not None
         }
         if description.imu is not None:
-            hold_ns = 1000 * description.noise.imu_delay_us
-            sources[description.imu.board] = (self.imu.frame, hold_ns)
+            sources[description.imu.board] = self.imu.frame
         return {
             name: SensorBoard(
                 description, description.boards[name], self.clock, random, self.ports[name],
-                *source,
+                source, held_ns(description, description.boards[name]),
             )
             for name, source in sources.items()
         }  # fmt: skip
