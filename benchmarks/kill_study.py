@@ -68,7 +68,12 @@ def in_time(reaction: Reaction) -> bool:
 
 
 def share(values: Sequence[float], of: float) -> float:
-    """The value below which a share of all lies, the next higher one; NaN counts as highest."""
+    """The value below which a share of all lies, the next higher one; NaN counts as highest.
+
+    NaN if there are none: every walk had ended by itself.
+    """
+    if not values:
+        return float("nan")
     ordered = sorted(values, key=lambda value: (value != value, value))
     return ordered[min(len(ordered) - 1, int(of * len(ordered)))]
 

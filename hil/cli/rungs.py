@@ -7,7 +7,6 @@ from pathlib import Path
 
 from typer import Exit
 
-from hil.cli.table import print_report
 from hil.request import RunRequest
 
 QUESTIONS: Mapping[str, str] = {
@@ -43,10 +42,10 @@ def conduct(request: RunRequest, *, yes: bool, as_json: bool) -> None:
     from hil.run import run
 
     session = build(request)
+    rung = "hoisted" if request.hoisted else request.activity
     if request.live:
-        what = "hoisted" if request.hoisted else request.activity
         require_consent(
-            f"{session.description.name} {QUESTIONS[what]}, and a hand on the switch in the servo "
+            f"{session.description.name} {QUESTIONS[rung]}, and a hand on the switch in the servo "
             "supply?",
             yes,
         )
@@ -55,7 +54,8 @@ def conduct(request: RunRequest, *, yes: bool, as_json: bool) -> None:
         sys.stdout.write(json.dumps(result.report, indent=2) + "\n")
         sys.stderr.write(f"{result.folder}\n")
     else:
-        rung = "hoisted" if request.hoisted else request.activity
+        from hil.cli.table import print_report
+
         print_report(result.report, "" if rung == "walk" else rung)
         sys.stdout.write(f"{result.folder}\n")
     if any(fault["reaction"] != "none" for fault in result.report["faults"]):

@@ -56,6 +56,24 @@ def test_a_quick_search_leaves_values_that_a_robot_file_takes(tmp_path):
     assert load_robot(str(file)).gains[300]["knee"][0] == best["gains"][300]["knee"][0]
 
 
+def test_a_search_cut_short_goes_on_and_finds_the_same(tmp_path):
+    def search(jobs):
+        result = study(
+            "minibiped", "--backend", "mujoco", "--space", "gains", "--vary", "knee.kp", "--quick",
+            "--jobs", jobs, "--out", tmp_path,
+        )  # fmt: skip
+        assert result.exit_code == 0, result.stderr
+        return (tmp_path / "best.yaml").read_text(), (tmp_path / "gait.csv").read_text()
+
+    found = search(1)
+    kept = (tmp_path / "cases.jsonl").read_bytes()
+    lines = kept.splitlines(keepends=True)
+    torn = b"".join(lines[: len(lines) // 2]) + lines[len(lines) // 2][:20]
+    (tmp_path / "cases.jsonl").write_bytes(torn)
+    assert search(2) == found
+    assert len((tmp_path / "cases.jsonl").read_bytes().splitlines()) == len(lines)
+
+
 def test_pushes_grow_and_go_around():
     facts = robot_facts(load_robot("minibiped"))
     pushes = growing_pushes(facts, 4.0, 5)
