@@ -22,6 +22,8 @@ LEG_OF_THE_LIMIT_M = 0.93
 """Leg length of the character for which that limit is given [m]."""
 SPEED_WEIGHT = 1e10
 BALANCE_WEIGHT = 1e15
+REFERENCE_SHARE = 0.25
+"""Of the reference poses in the acceleration."""
 PUSHED_WEIGHT = 100.0
 """Of the walk that is missing when pushes grow until the robot falls (ours)."""
 
@@ -37,8 +39,12 @@ class GaitMotion:
     """(T, n) [rad]"""
     alteration: Floats
     """Δ, shape (T,) [m]."""
+    drag: Floats
+    """Torques of a liquid's drag about the limbs' joints, summed, shape (T,) [N·m]."""
     leg_scale: float
     """Leg length over 0.93 m."""
+    reference: float | None = None
+    """Mean of Σ_i θ̈_di² of the reference poses [rad²/s⁴]; none without such poses."""
 
 
 def f_energy(motion: GaitMotion) -> float:
@@ -47,18 +53,44 @@ def f_energy(motion: GaitMotion) -> float:
 
 
 def f_acceleration(motion: GaitMotion) -> float:
-    """Mean of Σ_i q̈_i² [rad²/s⁴] of the resulting motion, by second differences."""
+    """Mean of Σ_i q̈_i² [rad²/s⁴] of the resulting motion, by second differences.
+
+    With reference poses three quarters of it and a quarter of theirs, squared as well: plain sums
+    would cancel.
+    """
     acceleration = np.diff(motion.joint_position, 2, axis=0) * motion.rate_hz**2
-    return float(np.square(acceleration).sum(axis=1).mean())
+    actual = float(np.square(acceleration).sum(axis=1).mean())
+    if motion.reference is None:
+        return actual
+    return REFERENCE_SHARE * motion.reference + (1.0 - REFERENCE_SHARE) * actual
+
+
+def f_drag(motion: GaitMotion) -> float:
+    """Mean of Σ_i |Σ_j (P_j − P_i) × F_j| [N·m], the drag's torques about the limbs' joints."""
+    return float(motion.drag.mean())
 
 
 TERMS: dict[str, Callable[[GaitMotion], float]] = {
     "energy": f_energy,
+    "drag": f_drag,
     "acceleration": f_acceleration,
 }
 """Terms of the sum, by name."""
-WEIGHTS = {"energy": 3.0, "acceleration": 1.0}
-"""Seed 003_73fecd8ec8927aad: η = 3, γ = 1."""
+
+
+def _weights(energy: float, drag: float, acceleration: float) -> dict[str, float]:
+    return {"energy": energy, "drag": drag, "acceleration": acceleration}
+
+
+WEIGHTINGS = {
+    "3-6-1": _weights(3.0, 6.0, 1.0),
+    "2-8-1": _weights(2.0, 8.0, 1.0),
+    "4-5-1": _weights(4.0, 5.0, 1.0),
+    "energy": _weights(1.0, 0.0, 0.0),
+    "drag": _weights(0.0, 1.0, 0.0),
+    "acceleration": _weights(0.0, 0.0, 1.0),
+}
+"""η, β, γ of seed 003_73fecd8ec8927aad, section 8.1, and one term alone; the seed chose 3-6-1."""
 
 
 def terms_of(motion: GaitMotion) -> dict[str, float]:
@@ -86,6 +118,14 @@ def f_speed(error: float, tolerance: float) -> float:
     """
     excess = max(0.0, abs(error) - tolerance) / tolerance
     return SPEED_WEIGHT * min(1.0, excess)
+
+
+def f_recovery(share: float) -> float:
+    """Cost of recovery steps that take a share of the judged time, up to 10¹⁵.
+
+    The seed refuses a walk with one of them; here the more, the longer.
+    """
+    return BALANCE_WEIGHT * share
 
 
 def f_balance(walked: float, *, pushed: bool) -> float:

@@ -80,11 +80,7 @@ class GaitSpace:
 
     def bounds(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
         """Least and largest entry of every variable."""
-        rows = [
-            ((one.low - one.start) / one.spread, (one.high - one.start) / one.spread)
-            for one in self.variables
-        ]
-        return tuple(low for low, _ in rows), tuple(high for _, high in rows)
+        return bounds_of(self.variables)
 
     def values(self, vector: Sequence[float]) -> dict[str, Any]:
         """The values of all keys that a vector changes, in the form of the robot file."""
@@ -94,6 +90,14 @@ class GaitSpace:
             for key in variable.keys:
                 values[key] = _replaced(values[key], variable.place, number)
         return values
+
+
+def bounds_of(variables: Sequence[Variable]) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Least and largest change of every variable, in spreads."""
+    return (
+        tuple((one.low - one.start) / one.spread for one in variables),
+        tuple((one.high - one.start) / one.spread for one in variables),
+    )
 
 
 def _replaced(value: Any, place: tuple[int, ...], number: float) -> Any:

@@ -81,16 +81,16 @@ class FootPlacement:
         y += outward - offset_y * wanted[1]
         return min(max(x, -limit), limit), min(max(y, -limit), limit)
 
-    def lead(self, wanted: float, level: float, resistance: float) -> float:
+    def lead(self, speed: float, level: float, resistance: float) -> float:
         """How much further the foot is sent than it is to land, because drag holds it back [m].
 
-        lag(H)·V³·ρμ/ρ_water for the commanded sagittal speed V [m/s]. Drag goes with V², but a
-        faster walk has longer steps too: the third power fits the placements that the integral of
-        the speed error finds. `level` is H [m], `resistance` the factor ρμ/ρ_water.
+        lag(H)·V³·ρμ/ρ_water for the mean sagittal speed V of the body [m/s]. Drag goes with V²,
+        but a faster walk has longer steps too: the third power fits the placements that the
+        integral of the speed error finds. `level` is H [m], `resistance` the factor ρμ/ρ_water.
         """
         levels, lags = self._lag
         lag = float(np.interp(level, levels, lags))
-        return lag * wanted**3 * resistance
+        return lag * speed**3 * resistance
 
     def share(self, phase: float, take_over: float | None) -> float:
         """Part s of the way from the start of the swing to the landing point.

@@ -24,10 +24,11 @@ class GaitStyles:
         """Parts of the swing foot's way: ahead, aside and how much of it a style gives."""
         self._parts: dict[int, float] = {}
         self._combiner: Combiner | None = None
-        if config.styles:
-            self._combiner = Combiner(config.styles, config.style_law)
-            self._poses = [self._pose_table(standard, style) for style in config.styles]
-            self._paths = [self._path_table(style) for style in config.styles]
+        styles = config.chosen_styles
+        if styles:
+            self._combiner = Combiner(styles, config.style_law)
+            self._poses = [self._pose_table(standard, style) for style in styles]
+            self._paths = [self._path_table(style) for style in styles]
             self._has_path = any(table.any() for table in self._paths)
 
     def choose(self, speed: float, level: float) -> None:

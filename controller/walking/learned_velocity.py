@@ -10,6 +10,7 @@ import numpy as np
 from controller.walking.heading_frame import Pair
 from controller.walking.key_poses import CurveTable
 from controller.walking.torque_config import LearnedVelocityConfig
+from hil.interface import Floats
 
 
 class LearnedVelocity:
@@ -20,6 +21,10 @@ class LearnedVelocity:
     Δ = mean|f_obs − f|: if Δ is below the threshold, f ← f + r·clip(f_obs − f, ±Δ). So the curve
     learns a shape only: the mean speed is the offset's (`velocity_offset`). Knots are joined by
     Catmull-Rom splines; those that the step did not reach take its last deviation.
+
+    Sagittally `scaled` (seed 003_73fecd8ec8927aad, section 5.4) the observed speed is brought to
+    the desired one V* by a factor and not by a shift, f_obs = v·V*/mean(v) − V*, and so is what
+    was learned at another V*: the curve is one of relative speeds.
     """
 
     def __init__(self, config: LearnedVelocityConfig, capacity: int) -> None:
@@ -28,6 +33,8 @@ class LearnedVelocity:
         self._at = np.linspace(0.0, 1.0, config.knots)
         self.values = np.zeros((2, 2, config.knots))
         """Deviations [m/s] by stance side, axis (sagittal, coronal) and knot."""
+        self._learned_at = [0.0, 0.0]
+        """Sagittal speed for which each side's curve was last learned [m/s]."""
         self._tables = [self._table(side) for side in range(2)]
         self._capacity = capacity
         self._phase: list[float] = []
@@ -44,14 +51,16 @@ class LearnedVelocity:
             self._phase.append(phase)
             self._speed.append(velocity)
 
-    def end_step(self, stance: int, learn: bool) -> None:
-        """Learn from the step that `stance` carried, or only forget its record."""
+    def end_step(self, stance: int, learn: bool, wanted: float) -> None:
+        """Learn from the step that `stance` carried, or only forget its record.
+
+        `wanted` is the commanded sagittal speed V* [m/s].
+        """
         phases, recorded = self._phase, np.array(self._speed)
         self._phase, self._speed = [], []
         if not learn or not phases:
             return
-        median = self._config.normalise == "median"
-        speed = recorded - (np.median if median else np.mean)(recorded, axis=0)
+        speed = self._normalised(recorded, stance, wanted)
         for axis in range(2):
             observed = np.interp(self._at, phases, speed[:, axis])
             error = observed - self.values[stance, axis]
@@ -59,6 +68,20 @@ class LearnedVelocity:
             if mean < self._config.threshold:
                 self.values[stance, axis] += self._config.rate * np.clip(error, -mean, mean)
         self._tables[stance] = self._table(stance)
+
+    def _normalised(self, recorded: Floats, stance: int, wanted: float) -> Floats:
+        """Deviations of the recorded speeds from the desired ones, shape (ticks, 2) [m/s]."""
+        median = self._config.normalise == "median"
+        middle = (np.median if median else np.mean)(recorded, axis=0)
+        speed: Floats = recorded - middle
+        least = self._config.least_scaled
+        if self._config.sagittal == "scaled" and abs(wanted) >= least:
+            if wanted * middle[0] > 0.0 and abs(middle[0]) >= least:
+                speed[:, 0] *= wanted / middle[0]
+            if wanted * self._learned_at[stance] > 0.0:
+                self.values[stance, 0] *= wanted / self._learned_at[stance]
+            self._learned_at[stance] = wanted
+        return speed
 
     def reset(self) -> None:
         """Back to the constant desired speed."""

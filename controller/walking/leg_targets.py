@@ -8,6 +8,7 @@ import numpy as np
 
 from controller.robot_model import RobotModel
 from controller.walking.heading_frame import Pair
+from controller.walking.leg_chain import LegChain
 from controller.walking.leg_kinematics import LegGeometry, Rows, Vector, yaw_rows
 from hil.interface import Floats
 
@@ -39,9 +40,13 @@ class LegPlanner:
 
     def __init__(self, model: RobotModel, hip_height: float) -> None:
         self._model = model
-        self._geometry = LegGeometry.of(model)
         hips = model.hip_positions - model.root_position
         self._hips: list[list[float]] = hips.tolist()
+        chains = [LegChain(model, leg) for leg in range(len(hips))]
+        exact = all(chain.exact for chain in chains)
+        self._solvers = [LegGeometry.of(model).solve] * 2 if exact else [c.solve for c in chains]
+        self._fixed_hips: Floats | None = None if exact else hips
+        """Hip centres in the base where joints move what they are read from [m], (2, 3)."""
         self.ankle_height = float(model.ankles[0][2] - model.corner_positions[0, 0, 2])
         """Ankle point above the sole [m]."""
         self._stance_drop = hip_height - self.ankle_height
@@ -77,7 +82,7 @@ class LegPlanner:
         `velocity` is that of the base [m/s]; `yaw` the heading of the foot [rad].
         """
         (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = self._model.root_rotation.tolist()
-        hip_x, hip_y, hip_z = self._model.hips[leg].tolist()
+        hip_x, hip_y, hip_z = self._hip(leg)
         u, v, w = velocity
         ankles = []
         for (x, y, z), instant in zip(points, INSTANTS, strict=True):
@@ -94,13 +99,22 @@ class LegPlanner:
             (xz * c + yz * s, yz * c - xz * s, zz),
         )
 
+    def _hip(self, leg: int) -> list[float]:
+        """Hip centre in the world [m]."""
+        model = self._model
+        hip = model.hips[leg]
+        if self._fixed_hips is not None:
+            hip = model.root_position + model.root_rotation @ self._fixed_hips[leg]
+        place: list[float] = hip.tolist()
+        return place
+
     def solve(self) -> LegTargets:
         """Joint targets of both legs as they were set."""
-        solve, (left, right) = self._geometry.solve, self._feet
+        (solve_left, solve_right), (left, right) = self._solvers, self._feet
         angles: list[float] = []
         for to_left, to_right in zip(*self._ankles, strict=True):
-            angles += solve(to_left, left)
-            angles += solve(to_right, right)
+            angles += solve_left(to_left, left)
+            angles += solve_right(to_right, right)
         before, now, after = np.array(angles).reshape(3, 2, 6)
         velocity = (after - before) / (2.0 * SPACING)
         return LegTargets(now, velocity, (after - 2.0 * now + before) / SPACING**2)

@@ -23,6 +23,9 @@ from controller.walking.torque_config import TorqueWalkingConfig
 from controller.walking.velocity_offset import VelocityOffset
 from hil.interface import Estimate, Floats, Reference
 
+LEAD_MEMORY = 0.5
+"""Time constant of the mean speed by which drag is foreseen, in nominal step times."""
+
 
 class StepPlanner:
     """Gait, heading, commanded and learned speed, and foot placement, tick by tick.
@@ -52,6 +55,8 @@ class StepPlanner:
         self.alteration = Alteration(config.alteration)
         self.coronal_alteration = Alteration(config.coronal_alteration)
         self._last_coronal: float | None = None
+        self._mean_speed = speed
+        self._mean_share = dt / (LEAD_MEMORY * config.gait.period)
         self._averages = (StepAverage(), StepAverage())
         longest = config.gait.max_phase * config.gait.period / dt
         self._offset = VelocityOffset(config.velocity_offset)
@@ -118,7 +123,7 @@ class StepPlanner:
                 self.coronal_alteration.end_step(both, command[1])
             self._offset.end_step(averages, command)
         self._last_coronal = averages[1] if ordinary else None
-        self._learned.end_step(stance, learn=ordinary)
+        self._learned.end_step(stance, learn=ordinary, wanted=command[0])
 
     def _observe_speed(self, command: Pair) -> None:
         """Take the speed of the tick, and what is wanted of it."""
@@ -164,7 +169,7 @@ class StepPlanner:
             self.velocity,
             height - float(robot.ankles[gait.stance][2]),
             command,
-            self.alteration.value + self._lead(command[0]),
+            self.alteration.value + self._lead(),
             self.coronal_alteration.value - gait.stance_sign * 0.5 * width,
         )
         share = self._placement.share(gait.phase, self._take_over.phase)
@@ -194,12 +199,17 @@ class StepPlanner:
             )
         return self._swing_start
 
-    def _lead(self, wanted: float) -> float:
-        """How much further the swing foot is sent in water [m]."""
+    def _lead(self) -> float:
+        """How much further the swing foot is sent in water [m].
+
+        For the speed that the body has: after a hit, or while the command runs ahead, drag is
+        that of the real speed, not of the wanted one.
+        """
         liquid = self.liquid
+        self._mean_speed += self._mean_share * (self.velocity[0] - self._mean_speed)
         if liquid.level <= 0.0:
             return 0.0
-        return self._placement.lead(wanted, liquid.level, liquid.resistance)
+        return self._placement.lead(self._mean_speed, liquid.level, liquid.resistance)
 
     def _sidestep(self, start: Pair, landing: Pair, share: float) -> float:
         """Coronal offset that leads the swing foot round the stance foot [m]."""

@@ -92,6 +92,10 @@ class LearnedVelocityConfig(Config):
     """Part of the clipped deviation that is adopted."""
     normalise: Literal["median", "mean"]
     """What of the observed speed is made equal to that of the curve; the seed: the median."""
+    sagittal: Literal["shifted", "scaled"] = "shifted"
+    """How the sagittal speed is made so; the coronal one is always shifted."""
+    least_scaled: PositiveFloat = 0.1
+    """Slower walks are shifted: the ratio of two small speeds says nothing [m/s]."""
 
 
 class AnkleLimitConfig(Config):
@@ -143,12 +147,25 @@ class TorqueWalkingConfig(Config):
     """Of the standard controller."""
     styles: tuple[StyleConfig, ...] = ()
     """Simple controllers that differ from it (`combiner`); none: the standard one alone."""
+    references: tuple[StyleConfig, ...] = ()
+    """Simple controllers that an offline search found."""
+    use_references: bool = False
+    """Take those too; at their speeds and levels they replace the others."""
     style_law: Law = "square"
     """How two neighbouring styles are mixed."""
     hands: HandPosesConfig | None = None
     """Where the hands are kept; none: the arms hold the start pose."""
     fallen_height: PositiveFloat
     """The robot has fallen, and all torques are zero, with the root below this height [m]."""
+
+    @property
+    def chosen_styles(self) -> tuple[StyleConfig, ...]:
+        """The simple controllers that the combiner mixes."""
+        if not self.use_references:
+            return self.styles
+        found = {(style.speed, style.water) for style in self.references}
+        kept = [style for style in self.styles if (style.speed, style.water) not in found]
+        return (*kept, *self.references)
 
     @model_validator(mode="after")
     def _complete(self) -> "TorqueWalkingConfig":
@@ -158,15 +175,16 @@ class TorqueWalkingConfig(Config):
                 odd = ", ".join(sorted(set(gains) ^ wanted))
                 raise ValueError(f"gains.{rate}: joints missing or unknown: {odd}")
         known = (*KeyPoses.model_fields, *PATH)
-        for style in self.styles:
+        for style in (*self.styles, *self.references):
             strangers = sorted(set(style.poses) - set(known))
             if strangers:
                 raise ValueError(
                     f"styles: no such trajectory: {', '.join(strangers)}; valid: {', '.join(known)}"
                 )
-        places = [(style.speed, style.water) for style in self.styles]
-        if len(set(places)) < len(places):
-            raise ValueError("styles: two for the same speed and water level")
+        for name, styles in (("styles", self.styles), ("references", self.references)):
+            places = [(style.speed, style.water) for style in styles]
+            if len(set(places)) < len(places):
+                raise ValueError(f"{name}: two for the same speed and water level")
         chosen = (self.gain_rate, self.implicit_gain_rate, *self.explicit_gain_rates)
         for rate_key in chosen:
             if rate_key is not None and rate_key not in self.gains:

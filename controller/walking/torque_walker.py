@@ -108,3 +108,5 @@ class TorqueWalker:
         status.foot_target[:] = self._plan.foot_target
         status.heading = self._plan.heading_ramp.heading
         status.alteration = self._plan.alteration.value
+        status.wanted_speed = self._plan.wanted[0]
+        status.recovering = self._plan.recovery.active

@@ -22,8 +22,6 @@ from hil.studies.search.budget import SearchBudget
 from hil.studies.study import Result, RunCases, Study, StudyResult
 from hil.studies.titles import title
 
-RATES_HZ = (1000, 750, 500, 300, 275, 250, 225)
-"""Rates of the seed's figures 2 and 3."""
 CAP = 38.9
 """Largest ΣKp + 10·ΣKd of a torque robot over m·g·L: the first author's 25 000 N·m."""
 

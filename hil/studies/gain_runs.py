@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hil.compose import feasible_gains
-from hil.compose.optimisations import gain_space
+from hil.compose.optimisations import GainLimits, gain_space
 from hil.description import RobotDescription
 from hil.joint_gains import GainSet, kind_of
 from hil.studies.gain_algorithm import Run
@@ -28,13 +28,9 @@ FACTORS = (0.01, 10.0)
 """Least and largest gain of one run, as a factor on its start."""
 
 
-Limits = tuple[tuple[float, float], tuple[float, float]]
-"""Least and largest stiffness and damping that a servo can be asked for."""
-
-
-def servo_limits(description: RobotDescription) -> dict[str, Limits]:
+def servo_limits(description: RobotDescription) -> dict[str, GainLimits]:
     """What the servos of every kind of joint can be asked for; of a torque robot nothing."""
-    found: dict[str, Limits] = {}
+    found: dict[str, GainLimits] = {}
     for joint in description.joints:
         region = feasible_gains(joint.servo, joint.mode) if joint.servo else None
         if region is not None:
@@ -50,7 +46,7 @@ class GainRuns:
     joints: tuple[str, ...]
     """Kinds of joints whose gains vary."""
     similar: Similar
-    limits: Mapping[str, Limits]
+    limits: Mapping[str, GainLimits]
     """Of the joints with servos."""
     cap: float | None
     """Largest ΣKp + 10·ΣKd, if there is one."""

@@ -2,9 +2,10 @@
 
 from collections.abc import Mapping
 
+from hil.compose.optimisations import gain_space
 from hil.description import RobotDescription
 from hil.interface import SIDES
-from hil.joint_gains import GainSet, kind_of
+from hil.joint_gains import GainSet
 
 
 def stored_sets(description: RobotDescription) -> dict[int, GainSet]:
@@ -19,13 +20,7 @@ def stored_sets(description: RobotDescription) -> dict[int, GainSet]:
             for rate in sorted(found)
         }
     rates = sorted(description.gains) or [description.defaults.rate_hz]
-    return {
-        rate: {
-            kind_of(joint.name): (joint.stiffness, joint.damping)
-            for joint in description.at_rate(rate).joints
-        }
-        for rate in rates
-    }
+    return {rate: gain_space.gains_at(description, rate, implicit=False) for rate in rates}
 
 
 def gain_overrides(description: RobotDescription, rate: int, gains: GainSet) -> tuple[str, ...]:

@@ -1,19 +1,20 @@
 """`stride study gait`: what shapes a walk, or the gains of servos, found by CMA-ES."""
 
 import sys
+from collections.abc import Sequence
 from functools import partial
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, Protocol
 
 import yaml
 from pydantic import Field, PositiveFloat, PositiveInt
 
-from hil.compose import feasible_gains
-from hil.compose.optimisations import gait_objective, gait_space
+from hil.compose.optimisations import GainLimits, gait_objective, gait_space
 from hil.description import RobotDescription
 from hil.errors import InputError, StrideError, UnknownNameError
 from hil.joint_gains import kind_of
 from hil.robot_files import load_robot
 from hil.studies.figures_gait_search import Move, draw_gait_search
+from hil.studies.gain_runs import servo_limits
 from hil.studies.gait_walks import GaitCase, gait_cost
 from hil.studies.search.budget import SearchBudget
 from hil.studies.search.cma_search import Search, SearchResult
@@ -23,6 +24,23 @@ from hil.studies.study import Result, RunCases, Study, StudyResult, Table
 from hil.studies.titles import title
 
 SpaceName = Literal["poses", "gait", "gains"]
+
+
+class Space(Protocol):
+    """Vectors of changes in spreads, and what they are in a robot file."""
+
+    @property
+    def variables(self) -> tuple[gait_space.Variable, ...]:
+        """One an entry of a vector."""
+        ...
+
+    def bounds(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Least and largest entry of every variable."""
+        ...
+
+    def values(self, vector: Sequence[float]) -> dict[str, Any]:
+        """By key, in the form of the robot file."""
+        ...
 
 
 class GaitStudy(Study):
@@ -54,6 +72,10 @@ class GaitStudy(Study):
         """Walk the start, search, and put the best beside it."""
         description = load_robot(self.request.robot, self.request.overrides)
         space = gait_space.GaitSpace(description, self._variables(description))
+        return self._result(space, self._searched(space, run_cases))
+
+    def _searched(self, space: Space, run_cases: RunCases) -> SearchResult:
+        """The best that the search finds in a space, judged by the walk as it is now."""
         [start] = run_cases(gait_cost, [self._case((), {})])
         if "error" in start:
             raise InputError(f"study gait: the start cannot walk: {start['error']}")
@@ -63,7 +85,7 @@ class GaitStudy(Study):
         terms = {name: start[name] for name in self.weights}
         lower, upper = space.bounds()
         problem = SearchProblem(
-            f"gait of {description.name}",
+            f"gait of {self.request.robot}",
             SearchSpace(
                 names=tuple(variable.name for variable in space.variables),
                 start=(0.0,) * len(space.variables),
@@ -71,11 +93,10 @@ class GaitStudy(Study):
                 lower=lower,
                 upper=upper,
             ),
-            lambda vector: self._case(_changes(space.values(vector)), terms),
+            lambda vector: self._case(changes_of(space.values(vector)), terms),
             gait_cost,
         )
-        found = Search(problem, self.budget, self.search_seed).run(run_cases)
-        return self._result(space, found)
+        return Search(problem, self.budget, self.search_seed).run(run_cases)
 
     def _case(self, changes: tuple[str, ...], start: dict[str, float]) -> GaitCase:
         return GaitCase(
@@ -105,7 +126,7 @@ class GaitStudy(Study):
             raise InputError("--space gait: say which numbers of a torque robot with --vary")
         return gait_space.gait_variables(description, self.vary or gait_space.SERVO_GAIT)
 
-    def _result(self, space: gait_space.GaitSpace, found: SearchResult) -> StudyResult:
+    def _result(self, space: Space, found: SearchResult) -> StudyResult:
         head = title(self.request, controller=False)
         rows: list[Result] = [
             {"iteration": iteration, "best_cost": cost}
@@ -125,9 +146,11 @@ class GaitStudy(Study):
         )
 
 
-def check_weights(texts: list[str] | None) -> dict[str, float]:
-    """Weights from `NAME=W`; others keep the seed's. Raises InputError."""
-    weights = dict(gait_objective.WEIGHTS)
+def check_weights(weighting: str, texts: list[str] | None) -> dict[str, float]:
+    """The weights of a weighting, some of them changed by `NAME=W`. Raises InputError."""
+    if weighting not in gait_objective.WEIGHTINGS:
+        raise UnknownNameError("--weighting", weighting, gait_objective.WEIGHTINGS)
+    weights = dict(gait_objective.WEIGHTINGS[weighting])
     for text in texts or ():
         name, _, value = text.partition("=")
         if name not in gait_objective.TERMS:
@@ -139,18 +162,17 @@ def check_weights(texts: list[str] | None) -> dict[str, float]:
     return weights
 
 
-def _limits(description: RobotDescription) -> dict[str, gait_space.GainLimits]:
+def _limits(description: RobotDescription) -> dict[str, GainLimits]:
     """What the registers of each kind of joint can realise."""
-    limits = {}
+    limits = servo_limits(description)
     for joint in description.joints:
-        found = feasible_gains(joint.servo or "", joint.mode)
-        if found is None:
+        if kind_of(joint.name) not in limits:
             raise InputError(f"joint {joint.name}: {joint.servo} has no mode {joint.mode}")
-        limits[kind_of(joint.name)] = (found.stiffness, found.damping)
     return limits
 
 
-def _changes(values: dict[str, Any]) -> tuple[str, ...]:
+def changes_of(values: dict[str, Any]) -> tuple[str, ...]:
+    """Values by key as `--set` takes them."""
     return tuple(f"{key}={value!r}" for key, value in values.items())
 
 
@@ -163,9 +185,13 @@ def _snippet(values: dict[str, Any], found: SearchResult) -> str:
         for section in sections:
             place = place.setdefault(section, {})
         place[last] = value
+    return written_by(found) + yaml.safe_dump(tree, default_flow_style=None, sort_keys=False)
+
+
+def written_by(found: SearchResult) -> str:
+    """Comment lines of a file of results: the command, and what the search won."""
     command = " ".join(["stride", *sys.argv[1:]])
-    head = f"# {command}\n# cost {found.history[0]:.6g} at the start, {found.cost:.6g} here\n"
-    return head + yaml.safe_dump(tree, default_flow_style=None, sort_keys=False)
+    return f"# {command}\n# cost {found.history[0]:.6g} at the start, {found.cost:.6g} here\n"
 
 
 def _terms_table(head: str, found: SearchResult) -> Table:

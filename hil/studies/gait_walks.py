@@ -1,19 +1,23 @@
 """The walks that judge a candidate of the gait search, and what they cost."""
 
+from collections.abc import Callable
 from functools import lru_cache
 
 import numpy as np
 from pydantic import Field, PositiveFloat, PositiveInt
 
+from hil.compose import build
+from hil.compose.optimisations import drag_meter, style_space
 from hil.compose.optimisations import gait_objective as objective
 from hil.cycle import TickRecord
 from hil.interface import Floats
 from hil.robot_facts import RobotFacts, robot_facts
 from hil.robot_files import load_robot
 from hil.schedule import Push
+from hil.session import Session
 from hil.studies.pushes import DIRECTIONS
 from hil.studies.study import Case, Result
-from hil.studies.walks import finite, mean_velocity, walk
+from hil.studies.walks import finite, mean_velocity, walk_session
 
 PUSH_S = 0.3
 PUSH_EVERY = 7.5
@@ -43,10 +47,15 @@ class GaitCase(Case):
 
 
 class MotionLog:
-    """A sink: torques, joint positions and Δ of the judged ticks."""
+    """A sink: torques, joint positions, Δ, drag and recovery steps of the judged ticks."""
 
-    def __init__(self, begin_s: float, end_s: float) -> None:
+    def __init__(self, begin_s: float, end_s: float, session: Session) -> None:
         self._begin_s, self._end_s = begin_s, end_s
+        self._session = session
+        wet = bool(session.request.schedules.water)
+        self._measure: Callable[[], float] = drag_meter(session) if wet else float
+        self._drag: list[float] = []
+        self._recovering: list[bool] = []
         self._torque: list[Floats] = []
         self._joints: list[Floats] = []
         self._alteration: list[float] = []
@@ -57,6 +66,13 @@ class MotionLog:
             self._torque.append(record.frame.joint_torque.copy())
             self._joints.append((record.truth or record.estimate).joint_position.copy())
             self._alteration.append(record.status.alteration)
+            self._drag.append(self._measure())
+            self._recovering.append(record.status.recovering)
+
+    @property
+    def recovery(self) -> float:
+        """Share of the judged ticks that belong to recovery steps."""
+        return float(np.mean(self._recovering)) if self._recovering else 0.0
 
     def terms(self, rate_hz: float, facts: RobotFacts) -> Result | None:
         """Terms of the objective and the factor of Δ; None for too few ticks."""
@@ -67,9 +83,21 @@ class MotionLog:
             np.array(self._torque),
             np.array(self._joints),
             np.array(self._alteration),
+            np.array(self._drag),
             facts.leg_length / objective.LEG_OF_THE_LIMIT_M,
+            reference_acceleration(self._session),
         )
         return {"alteration": objective.alteration_factor(motion), **objective.terms_of(motion)}
+
+
+def reference_acceleration(session: Session) -> float | None:
+    """Of the poses that a torque robot is asked for at the end of the walk; None for others."""
+    description, schedules = session.description, session.request.schedules
+    if description.actuation == "servo":
+        return None
+    speed = schedules.speed[-1][1] if schedules.speed else description.defaults.speed
+    level = schedules.water[-1][1] if schedules.water else 0.0
+    return style_space.reference_acceleration(description, speed, level)
 
 
 def gait_cost(case: GaitCase) -> Result:
@@ -98,12 +126,15 @@ def _walked(case: GaitCase, rate_hz: int, seed: int) -> dict[str, float]:
             "schedules": case.request.schedules.model_copy(update={"pushes": pushes}),
         }
     )
-    log = MotionLog(case.warm_s, end_s)
-    walk_ = walk(request, log)
+    session = build(request)
+    log = MotionLog(case.warm_s, end_s, session)
+    walk_ = walk_session(session, log)
     walked = 1.0 if walk_.stopped_s is None else max(0.0, walk_.stopped_s) / duration_s
     terms = log.terms(rate_hz, facts)
     cost = objective.f_balance(walked, pushed=bool(pushes))
-    found = {"walked": walked}
+    if not pushes:
+        cost += objective.f_recovery(log.recovery)
+    found = {"walked": walked, "recovery": log.recovery}
     if terms is not None:
         factor = terms.pop("alteration")
         cost += factor * objective.f_sum(terms, case.start or terms, case.weights)

@@ -4,6 +4,7 @@ import mujoco
 
 from hil.description import RobotDescription
 from hil.robot_facts import robot_facts
+from sim_backends.water.drag_torque import DragTorque
 from sim_backends.water.hydrodynamics import Hydrodynamics
 
 CELLS_A_LEG = 47
@@ -28,22 +29,31 @@ class Immersion:
         self._model, self._data = model, data
         self.water: Hydrodynamics | None = None
         """The liquid; none on dry land."""
+        self._hydrodynamics: Hydrodynamics | None = None
+        self._drag_torque: DragTorque | None = None
 
     def set_medium(self, level: float, density: float, viscosity: float) -> None:
         """A liquid up to a level above the floor [m], its density [kg/m³] and viscosity factor.
 
-        Level 0 is dry land. Raises InputError for a robot with other shapes than boxes, capsules
-        and spheres.
+        Level 0 is dry land. The first call, whatever its level, cuts the robot into elements,
+        which takes many ticks: give it before anything moves. Raises InputError for a robot with
+        other shapes than boxes, capsules and spheres.
         """
-        if level <= 0.0:
-            self.water = None
-            return
-        if self.water is None:
+        if self._hydrodynamics is None:
             description = self._description
             leg = robot_facts(description).leg_length
             cell = description.plant.water_cell or leg / CELLS_A_LEG
-            self.water = Hydrodynamics(self._model, self._data, self._root, cell)
-        self.water.set_medium(level, density, viscosity)
+            self._hydrodynamics = Hydrodynamics(self._model, self._data, self._root, cell)
+        self._hydrodynamics.set_medium(level, density, viscosity)
+        self.water = self._hydrodynamics if level > 0.0 else None
+
+    def drag_torque(self) -> float:
+        """Torques of the last step's drag about the joints of the limbs, summed [N·m]."""
+        if self.water is None:
+            return 0.0
+        if self._drag_torque is None:
+            self._drag_torque = DragTorque(self._model, self._data, self._root, self.water)
+        return self._drag_torque.total()
 
     def step(self) -> None:
         """One step of the physics."""

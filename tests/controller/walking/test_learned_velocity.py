@@ -10,11 +10,11 @@ CONFIG = LearnedVelocityConfig(knots=11, threshold=0.6, rate=0.5, normalise="mea
 PHASES = np.linspace(0.0, 1.0, 201)
 
 
-def teach(learned, steps, speed, stance=0, learn=True):
+def teach(learned, steps, speed, stance=0, learn=True, wanted=0.5):
     for _ in range(steps):
         for phase in PHASES:
             learned.observe(phase, speed(phase))
-        learned.end_step(stance, learn)
+        learned.end_step(stance, learn, wanted)
 
 
 def wave(phase):
@@ -48,7 +48,7 @@ def test_frozen_step_teaches_nothing_and_is_forgotten():
     learned = LearnedVelocity(CONFIG, capacity=300)
     teach(learned, 1, wave, learn=False)
     assert not learned.values.any()
-    learned.end_step(0, learn=True)
+    learned.end_step(0, learn=True, wanted=0.5)
     assert not learned.values.any()
 
 
@@ -71,3 +71,24 @@ def test_reset_returns_to_the_constant_speed():
     teach(learned, 3, wave)
     learned.reset()
     assert learned.deviation(0, 0.25) == (0.0, 0.0)
+
+
+def test_a_scaled_curve_belongs_to_the_speed_that_is_wanted():
+    """A step at 0.5 m/s where 0.4 is wanted: its waves count as much smaller as the speed is."""
+    learned = LearnedVelocity(CONFIG.model_copy(update={"sagittal": "scaled"}), capacity=300)
+    teach(learned, 25, wave, wanted=0.4)
+    assert learned.deviation(0, 0.0)[0] == pytest.approx(0.08, abs=0.005)
+    assert learned.deviation(0, 0.25)[1] == pytest.approx(0.05, abs=0.005), "coronal: shifted"
+
+
+def test_a_scaled_curve_follows_a_new_speed_at_once():
+    learned = LearnedVelocity(CONFIG.model_copy(update={"sagittal": "scaled"}), capacity=300)
+    teach(learned, 25, wave)
+    teach(learned, 1, lambda phase: 1.6 * wave(phase), wanted=0.8)
+    assert learned.deviation(0, 0.0)[0] == pytest.approx(0.16, abs=0.01)
+
+
+def test_slow_walks_are_not_scaled():
+    learned = LearnedVelocity(CONFIG.model_copy(update={"sagittal": "scaled"}), capacity=300)
+    teach(learned, 25, lambda phase: wave(phase) - [0.49, 0.0], wanted=0.02)
+    assert learned.deviation(0, 0.0)[0] == pytest.approx(0.1, abs=0.01)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from controller.walking.torque_config import TorqueWalkingConfig
+from controller.walking.torque_config import TorqueWalkingConfig, torque_walking_config
 from hil.errors import DescriptionError
 from hil.validation import validate
 
@@ -42,3 +42,23 @@ def test_gain_set_without_a_joint_is_refused(human):
     del gains[300]["knee"]
     with pytest.raises(DescriptionError, match=r"gains\.300: joints missing or unknown: knee"):
         validate(TorqueWalkingConfig, {**human.walking, "gains": gains}, "human.yaml", "walking")
+
+
+def test_references_stand_in_for_the_styles_of_their_cells(human):
+    """One at a style's own speed and level, one at a speed of its own."""
+    references = [{"speed": 0.3, "water": 0.5}, {"speed": 0.9, "water": 0.5}]
+    told = human.model_copy(
+        update={"walking": human.walking | {"references": references, "use_references": False}}
+    )
+    without = torque_walking_config(told)
+    assert without.chosen_styles == without.styles
+    walking = told.walking | {"use_references": True}
+    chosen = torque_walking_config(told.model_copy(update={"walking": walking})).chosen_styles
+    assert len(chosen) == len(without.styles) + 1
+    assert [one.speed for one in chosen[-2:]] == [0.3, 0.9]
+
+
+def test_two_references_for_one_cell_are_refused(human):
+    twice = human.walking | {"references": [{"speed": 0.3, "water": 0.5}] * 2}
+    with pytest.raises(DescriptionError, match="references: two for the same speed"):
+        torque_walking_config(human.model_copy(update={"walking": twice}))

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from hil.robot_facts import robot_facts
 from hil.robot_files import load_robot
 from sim_backends.plant import Plant
+from sim_backends.water.drag_torque import DragTorque
 from sim_backends.water.hydrodynamics import Hydrodynamics
 from sim_backends.water.immersion import CELLS_A_LEG
 from sim_backends.water.surface import body_surface
@@ -178,3 +179,44 @@ def test_dropped_into_the_liquid_a_body_loses_energy_all_the_way():
         energies.append(0.5 * 4.0 * v * v + 4.0 * GRAVITY * z + buoyant)
     assert np.diff(energies).max() < 2e-2  # the integrator's own, of an energy of 51 J
     assert energies[-1] == pytest.approx(4.0 * GRAVITY + DENSITY * GRAVITY * 2e-4, rel=0.01)
+
+
+def test_drag_turns_a_limb_about_the_joint_it_hangs_on():
+    """A plate of 0.2 × 0.4 m swung about its upper edge: ∫½ρ(ωr)²·w·r·dr = ½ρω²w·l⁴/4."""
+    model = mujoco.MjModel.from_xml_string(
+        """<mujoco><option timestep="0.001" gravity="0 0 0"/><worldbody><body name="root">
+        <freejoint/><geom type="box" size="0.1 0.1 0.01" mass="1e6" contype="0"/>
+        <body name="limb"><joint name="hinge" type="hinge" axis="0 1 0"/><geom type="box"
+        size="0.001 0.1 0.2" pos="0 0 -0.2" mass="5" contype="0"/></body></body></worldbody>
+        </mujoco>"""
+    )
+    data = mujoco.MjData(model)
+    data.qvel[-1] = 0.5
+    water = Hydrodynamics(model, data, 1, 0.01)
+    water.set_medium(2.0, DENSITY, 1.0)
+    mujoco.mj_step1(model, data)
+    water.act()
+    swung = 0.5 * DENSITY * 0.5**2 * 0.2 * 0.4**4 / 4.0
+    assert DragTorque(model, data, 1, water).total() == pytest.approx(swung, rel=0.02)
+
+
+def test_a_liquid_that_comes_and_goes_is_prepared_once():
+    """Cutting a robot into elements takes many ticks: a running walk must not wait for it."""
+    plant = Plant(load_robot("human"), 300)
+    plant.set_medium(0.0, DENSITY, 1.0)
+    assert plant.immersion.water is None
+    plant.set_medium(0.5, DENSITY, 1.0)
+    first = plant.immersion.water
+    plant.set_medium(0.0, DENSITY, 1.0)
+    plant.immersion.step()
+    plant.set_medium(0.7, DENSITY, 1.0)
+    assert plant.immersion.water is first
+
+
+def test_dry_land_drags_at_no_joint():
+    plant = Plant(load_robot("human"), 300)
+    assert plant.immersion.drag_torque() == 0.0
+    plant.set_medium(0.5, DENSITY, 1.0)
+    plant.data.qvel[0] = 1.0
+    plant.immersion.step()
+    assert plant.immersion.drag_torque() > 1.0
