@@ -17,7 +17,7 @@ from drivers.dynamixel.control_table import VOLTAGE_UNIT, OperatingMode, Registe
 from drivers.dynamixel.group_access import GroupAccess
 from drivers.dynamixel.port import Port
 from drivers.dynamixel.power import BusPower
-from drivers.dynamixel.servo_models import find_servo_model
+from drivers.dynamixel.servo_models import servo_model_of
 from drivers.dynamixel.states import ServoStates
 from hil.description import RobotDescription
 from hil.errors import InputError
@@ -80,7 +80,7 @@ def bus_budgets(
 def require_bus_speeds(description: RobotDescription) -> None:
     """Raises InputError for a bus that is faster than one of its servos can be."""
     for joint in description.joints:
-        model = find_servo_model(joint.servo or "")
+        model = servo_model_of(joint)
         bus = joint.bus or ""
         if description.buses[bus].baud not in model.bauds:
             raise InputError(
@@ -103,7 +103,7 @@ def expected_servos(description: RobotDescription, bus: str) -> tuple[ExpectedSe
         ExpectedServo(
             joint.name,
             joint.id or 0,
-            find_servo_model(joint.servo or ""),
+            servo_model_of(joint),
             OperatingMode(JOINT_MODES[joint.mode]),
             description.safety.overload_ends_torque,
         )

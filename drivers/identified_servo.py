@@ -10,14 +10,14 @@ from drivers.calibration import (
     load_calibration,
     save_calibration,
 )
-from drivers.dynamixel.servo_models import find_servo_model
+from drivers.dynamixel.servo_models import servo_model_of
 from hil.description import Joint, RobotDescription
 from hil.errors import InputError
 
 
 def require_identifiable(joint: Joint) -> None:
     """Raises InputError for a joint whose servo measures no motor current."""
-    model = find_servo_model(joint.servo or "")
+    model = servo_model_of(joint)
     if model.current_unit is None or model.current_sensing == "supply":
         raise InputError(
             f"joint {joint.name}: {model.name} does not measure its motor's current, from which "

@@ -4,7 +4,7 @@ import numpy as np
 
 from drivers.calibration import RobotCalibration
 from drivers.dynamixel.control_table import VELOCITY_UNIT
-from drivers.dynamixel.servo_models import ServoModel, find_servo_model
+from drivers.dynamixel.servo_models import ServoModel, servo_model_of
 from drivers.dynamixel.states import ServoStates
 from drivers.motor_constants import motor_parameters
 from hil.description import RobotDescription
@@ -25,7 +25,7 @@ class JointConverter:
     def __init__(self, description: RobotDescription, calibration: RobotCalibration) -> None:
         direction = np.array([float(joint.direction) for joint in description.joints])
         motors = motor_parameters(description, calibration)
-        models = [find_servo_model(joint.servo or "") for joint in description.joints]
+        models = [servo_model_of(joint) for joint in description.joints]
         self._position_scale = direction / COUNTS_PER_RADIAN
         self._velocity_scale = direction * VELOCITY_UNIT
         self._torque_scale = direction * [

@@ -12,6 +12,7 @@ from typing import Any, Literal, Self
 
 from pydantic import Field, PositiveFloat, PositiveInt, model_validator
 
+from hil.errors import DescriptionError
 from hil.interface import SIDES
 from hil.joint_gains import GainSet, kind_of, set_for
 from hil.twin import Noise, Plant, Supply
@@ -31,7 +32,8 @@ class Joint(Config):
     torque_limit: PositiveFloat
     """[N·m]"""
     servo: str | None = None
-    """Dynamixel model; none for a joint that takes torques."""
+    """Dynamixel model; none for a joint that takes torques, or while nobody knows it yet: such a
+    robot walks in MuJoCo, and no bus is opened."""
     bus: str | None = None
     id: int | None = Field(default=None, ge=0, le=252)
     direction: Literal[-1, 1] = 1
@@ -195,6 +197,16 @@ class RobotDescription(Config):
         """Start pose in joint order [rad]."""
         return tuple(self.start.joints.get(name, 0.0) for name in self.joint_names)
 
+    def require_servos(self) -> None:
+        """Raises DescriptionError unless every joint says which servo it is, and where."""
+        for joint in self.joints:
+            missing = [key for key in ("servo", "bus", "id") if getattr(joint, key) is None]
+            if missing:
+                raise DescriptionError(
+                    self.file, f"joints.{joint.name}", f"{', '.join(missing)} not filled in: a bus "
+                    "needs them (`stride check --description` lists all that is missing)"
+                )  # fmt: skip
+
     def at_rate(self, rate_hz: int) -> Self:
         """This robot with the joint gains of a control rate [Hz], by `joint_gains.set_for`."""
         if not self.gains:
@@ -258,10 +270,7 @@ class RobotDescription(Config):
             raise ValueError(f"joint {joint.name}: range must rise, got {joint.range}")
         if self.actuation == "torque":
             return
-        missing = [key for key in ("servo", "bus", "id") if getattr(joint, key) is None]
-        if missing:
-            raise ValueError(f"joint {joint.name}: a servo joint needs {', '.join(missing)}")
-        if joint.bus not in self.buses:
+        if joint.bus is not None and joint.bus not in self.buses:
             raise ValueError(
                 f"joint {joint.name}: bus {joint.bus!r} is not one of buses: "
                 f"{', '.join(self.buses) or '(none)'}"
@@ -269,5 +278,5 @@ class RobotDescription(Config):
         twins = [
             other.name for other in self.joints if other.bus == joint.bus and other.id == joint.id
         ]
-        if len(twins) > 1:
+        if None not in (joint.bus, joint.id) and len(twins) > 1:
             raise ValueError(f"joints {' and '.join(twins)} share id {joint.id} on {joint.bus}")

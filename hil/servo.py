@@ -68,6 +68,8 @@ class MotorParameters:
     """[A] of one count of Goal Current; NaN for a servo without it."""
     current_divisor: Floats | None = None
     """Position P Gain register units per current count and position count, in mode 5."""
+    size: Floats | None = None
+    """Copper and case against those of an 82 g servo, for its heat; none: all are such."""
 
     def stall_torque(self, voltage: float) -> Floats:
         """Torque at standstill and full duty [N·m], shape (n,)."""

@@ -41,21 +41,31 @@ def validate(model: type[ConfigT], data: Mapping[str, Any], file: str, prefix: s
     try:
         return model.model_validate(data)
     except ValidationError as error:
-        first = error.errors()[0]
-        location = [str(part) for part in first["loc"]]
-        key = ".".join(([prefix] if prefix else []) + location)
-        problem = first["msg"]
-        if first["type"] == "extra_forbidden":
-            valid = ", ".join(_fields_at(model, location[:-1]))
-            problem = f"unknown key; valid here: {valid}"
-        elif first["type"] == "missing":
-            problem = "is missing"
-        else:
-            problem = problem.removeprefix("Value error, ")
-            if not isinstance(first["input"], dict):
-                got = repr(first["input"])
-                problem += f" (got {got if len(got) < 60 else got[:57] + '...'})"
-        raise DescriptionError(file, key or "(top)", problem) from error
+        key, problem = mistakes(model, error, prefix)[0]
+        raise DescriptionError(file, key, problem) from error
+
+
+def mistakes(
+    model: type[BaseModel], error: ValidationError, prefix: str = ""
+) -> list[tuple[str, str]]:
+    """Key and problem of everything that is wrong, as `validate` tells the first of them."""
+    return [_mistake(model, dict(detail), prefix) for detail in error.errors()]
+
+
+def _mistake(model: type[BaseModel], detail: dict[str, Any], prefix: str) -> tuple[str, str]:
+    location = [str(part) for part in detail["loc"]]
+    key = ".".join(([prefix] if prefix else []) + location)
+    problem: str = detail["msg"]
+    if detail["type"] == "extra_forbidden":
+        problem = f"unknown key; valid here: {', '.join(_fields_at(model, location[:-1]))}"
+    elif detail["type"] == "missing":
+        problem = "is missing"
+    else:
+        problem = problem.removeprefix("Value error, ")
+        if not isinstance(detail["input"], dict):
+            got = repr(detail["input"])
+            problem += f" (got {got if len(got) < 60 else got[:57] + '...'})"
+    return key or "(top)", problem
 
 
 def _fields_at(model: type[BaseModel], location: list[str]) -> list[str]:

@@ -28,9 +28,12 @@ class ServoHeat:
     that of the case (assumed).
     """
 
-    def __init__(self, resistance: Floats) -> None:
-        """`resistance`: of the windings at 25 °C [Ω], (n,)."""
+    def __init__(self, resistance: Floats, size: Floats | None = None) -> None:
+        """`resistance`: of the windings at 25 °C [Ω], (n,). `size`: of each servo against the one
+        of 82 g whose figures these are, (n,): C goes with it, R with its inverse.
+        """
         self._cold = resistance
+        self._size = 1.0 if size is None else size
         self.resistance = resistance.copy()
         """As warm as the windings are [Ω], shape (n,)."""
         self.winding = np.full(resistance.size, AMBIENT)
@@ -42,7 +45,7 @@ class ServoHeat:
 
     def advance(self, mean_square: Floats, duration: float) -> None:
         """Mean square of the currents [A²], (n,), during some milliseconds [s]."""
-        loss = self.resistance * mean_square
+        loss = self.resistance * mean_square / self._size
         inward = (self.winding - self.case) / WINDING_RESISTANCE
         outward = (self.case - AMBIENT) / CASE_RESISTANCE
         self.winding += duration / WINDING_CAPACITY * (loss - inward)

@@ -89,7 +89,7 @@ class ServoPhysics:
         """Registers of every servo's loops; call `refresh` after changing one."""
         self.friction: GearFriction | None = None
         """Friction that changes; none is MuJoCo's constant one."""
-        self.heat = ServoHeat(motors.resistance)
+        self.heat = ServoHeat(motors.resistance, motors.size)
         self.protection = ServoProtection(n)
         self._late: deque[list[float]] = deque()
         self._gains = (b"", b"", b"")

@@ -95,7 +95,8 @@ def usable_modes(model: ServoModel) -> tuple[str, ...]:
 def require_mode(joint: Joint) -> ServoMode:
     """The mode of a joint. Raises InputError when its servo does not have it."""
     mode = JOINT_MODES[joint.mode]
-    usable = usable_modes(find_servo_model(joint.servo or ""))
+    model = None if joint.servo is None else find_servo_model(joint.servo)
+    usable = ("position",) if model is None else usable_modes(model)
     if joint.mode not in usable:
         raise InputError(
             f"joint {joint.name}: {joint.servo} cannot make a stiffness in mode {joint.mode}; "

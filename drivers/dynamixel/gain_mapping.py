@@ -250,9 +250,12 @@ def current_limits(description: RobotDescription, motors: MotorParameters) -> In
 
     The servo's own limit, or less where the joint's torque limit is less.
     """
-    models = [find_servo_model(joint.servo or "") for joint in description.joints]
-    limits = np.array([model.current_limit or 0 for model in models], dtype=np.int64)
-    for index, (joint, model) in enumerate(zip(description.joints, models, strict=True)):
+    limits = np.zeros(len(description.joints), dtype=np.int64)
+    for index, joint in enumerate(description.joints):
+        if joint.servo is None:
+            continue
+        model = find_servo_model(joint.servo)
+        limits[index] = model.current_limit or 0
         if model.current_unit is not None:
             allowed = joint.torque_limit / float(motors.torque_constant[index])
             limits[index] = min(limits[index], int(allowed / model.current_unit))

@@ -6,6 +6,7 @@ A new model is a new entry of a table there; nothing else has to change.
 from pathlib import Path
 
 from drivers.dynamixel.servo_model import IndirectCells, ServoModel
+from hil.description import Joint
 from hil.errors import DescriptionError, InputError, UnknownNameError
 from hil.validation import Config, read_yaml, validate
 
@@ -16,6 +17,7 @@ __all__ = [
     "find_servo_model",
     "find_servo_model_by_number",
     "read_models",
+    "servo_model_of",
 ]
 
 TABLES = Path(__file__).parent / "models"
@@ -61,6 +63,18 @@ def find_servo_model(name: str) -> ServoModel:
     if name not in SERVO_MODELS:
         raise UnknownNameError("servo model", name, SERVO_MODELS)
     return SERVO_MODELS[name]
+
+
+def servo_model_of(joint: Joint) -> ServoModel:
+    """The model of a joint's servo. Raises InputError where none is filled in yet, and
+    UnknownNameError.
+    """
+    if joint.servo is None:
+        raise InputError(
+            f"joint {joint.name}: servo is missing: fill in servo and id of every joint "
+            "(`stride check --description ROBOT.yaml` lists them), or walk on --backend mujoco"
+        )
+    return find_servo_model(joint.servo)
 
 
 def find_servo_model_by_number(number: int) -> ServoModel:

@@ -17,6 +17,8 @@ EPILOG = """[bold]Examples[/bold]
 
 stride check my_robot.yaml                        before every session
 
+stride check my_robot.yaml --description          no hardware: what does the file still lack?
+
 stride check my_robot.yaml --after-fall           hang it up first, legs straight down
 
 stride check my_robot.yaml --watchdog left_knee   one hanging joint: does silence stop it?
@@ -37,6 +39,10 @@ def check(
     ] = None,
     after_fall: Annotated[
         bool, Option("--after-fall", help="Compare the hanging legs too: has a horn slipped?")
+    ] = False,
+    description_only: Annotated[
+        bool,
+        Option("--description", help="Only the robot file: what is missing, for which rung."),
     ] = False,
     watchdog: Annotated[
         str | None,
@@ -59,6 +65,9 @@ def check(
     from hil.bringup.ports import robot_ports
     from hil.robot_files import load_robot
 
+    if description_only:
+        _describe(robot, as_json)
+        return
     description = load_robot(robot)
     found = robot_ports(description, port or [], ports)
     if watchdog is not None:
@@ -77,6 +86,29 @@ def check(
         if bundle is not None:
             sys.stdout.write(f"{bundle}\n")
     if inspection.problems:
+        raise Exit(1)
+
+
+def _describe(robot: str, as_json: bool) -> None:
+    from dataclasses import asdict
+
+    from hil.cli.bringup_tables import print_text
+    from hil.description_gaps import description_gaps
+
+    gaps = description_gaps(robot)
+    rows = [asdict(gap) for gap in gaps]
+    if as_json:
+        sys.stdout.write(json.dumps({"gaps": rows}, indent=2) + "\n")
+    elif not gaps:
+        sys.stdout.write(f"{robot}: nothing is missing\n")
+    else:
+        heads = ("needed for", "where", "what", "what to do")
+        print_text(
+            f"{robot}: {len(gaps)} thing(s) missing",
+            heads,
+            [(gap.needed_for, gap.where, gap.what, gap.advice) for gap in gaps],
+        )
+    if gaps:
         raise Exit(1)
 
 

@@ -28,7 +28,7 @@ def make_supervisor(
 ) -> Supervisor:
     """The supervisor of a run. `paced`: ticks are those of the wall clock, and can be late.
 
-    `feet`: carry the walking robot, hang in the air, or may do either.
+    `feet`: carry the walking robot, hang in the air, may do either, or leave the ground.
     """
     sit_ns = round(sit_time_s(description) * 1e9)
     way_out = WayOut(sit_ns, round(LAND_S * 1e9) if sit_ns else 0)
@@ -45,4 +45,4 @@ def make_supervisor(
             FeetMonitor(description, rate_hz, weight_n, feet),
             ClampMonitor(),
         ]
-    return Supervisor(monitors, way_out)
+    return Supervisor(monitors, way_out, leaps=feet == "leap")

@@ -10,6 +10,8 @@ MAX_TILT_RAD = 1.0
 """Tilt of the root body beyond which it counts as fallen."""
 MIN_HEIGHT_SHARE = 0.6
 """Share of the starting height of the root body below which it counts as fallen."""
+MIN_HEIGHT_SHARE_LEAP = 0.35
+"""The same of a robot that jumps: the crouch of the human is at 0.6, after 0.15 m down at 0.5."""
 LOOK_AHEAD_S = 0.15
 """A fall is predicted from the tilt that is reached so much later at the present rate."""
 PREDICTED_TILT_RAD = 0.75
@@ -26,15 +28,18 @@ class BodyMonitor:
     from the last two ticks. A fall is only predicted for a body that tilts further.
     """
 
-    def __init__(self, *, predicts: bool) -> None:
-        """`predicts`: whether a fall that has begun is an event, for a robot that can land."""
+    def __init__(self, *, predicts: bool, leaps: bool = False) -> None:
+        """`predicts`: whether a fall that has begun is an event, for a robot that can land.
+        `leaps`: it crouches deep, and may land lower than it stood.
+        """
+        self._share = MIN_HEIGHT_SHARE_LEAP if leaps else MIN_HEIGHT_SHARE
         self._predicts = predicts
         self._min_height = -math.inf
         self._tilt, self._time_ns = 0.0, 0
 
     def begin_walking(self, base_height: float) -> None:
         """From now on a low root body counts as a fall; its height at T = 0 [m]."""
-        self._min_height = MIN_HEIGHT_SHARE * base_height
+        self._min_height = self._share * base_height
 
     def begin_sitting(self) -> None:
         """From now on a low root body is what is wanted."""

@@ -33,7 +33,7 @@ class FeetMonitor:
     ) -> None:
         self._boards = tuple(description.feet[side].board for side in ("left", "right"))
         self._share = 1.0 / (MEAN_TIME_S * rate_hz)
-        self._judged = None not in self._boards and feet != "either"
+        self._judged = None not in self._boards and feet not in ("either", "leap")
         self._expected = self._mean = 0.0 if feet == "hang" else weight_n
         self._tolerance = (TOUCH_SHARE if feet == "hang" else MAX_LOAD_ERROR) * weight_n
         self._wrong = "touch something" if feet == "hang" else "load is not the weight"

@@ -11,11 +11,14 @@ from hil.safety.severity import Event, Fault, Severity
 class Supervisor:
     """Judges every tick before its command is made. Raises nothing and sends nothing."""
 
-    def __init__(self, monitors: Iterable[Monitor], way_out: WayOut) -> None:
+    def __init__(
+        self, monitors: Iterable[Monitor], way_out: WayOut, *, leaps: bool = False
+    ) -> None:
+        """`leaps`: the robot jumps, and what that asks of the body is no fall."""
         self.state: SafetyState = RUNNING
         self.faults: list[Fault] = []
         """What went wrong so far, in order."""
-        self._body = BodyMonitor(predicts=way_out.land_ns > 0)
+        self._body = BodyMonitor(predicts=way_out.land_ns > 0, leaps=leaps)
         self._monitors = (self._body, *monitors)
         self._way_out = way_out
         self._pending: list[Event] = []
@@ -33,6 +36,7 @@ class Supervisor:
         """The walk is over: sit down, then torque off. No fault."""
         if self.state.severity == Severity.OK:
             self.state = SafetyState(Severity.SOFT_STOP, now_ns)
+            self._body.begin_sitting()
 
     def judge(self, situation: Situation, time_s: float) -> Action:
         """What to do in this tick; `time_s` from T = 0, for the book."""

@@ -333,3 +333,12 @@ def test_a_pause_is_told_before_what_it_brought():
     watched.frame.imu_age_ns = 500_000_000  # nobody asked the board meanwhile
     watched.tick()
     assert [name for _, name, _ in watched.told] == ["paused 503 ms", "silent"]
+
+
+def test_sitting_down_low_at_the_walks_own_end_is_no_fall():
+    watched = Watched()
+    watched.tick()
+    watched.supervisor.finish(watched.situation.now_ns)
+    watched.situation.motion = body(height=0.13)
+    assert watched.tick() is Action.SIT
+    assert watched.told == []

@@ -70,6 +70,14 @@ def test_winding_and_case_settle_where_their_resistances_put_them():
     assert heat.resistance[0] == pytest.approx(5.0 * (1 + 0.00393 * 11.0 * loss), rel=0.01)
 
 
+def test_a_servo_of_twice_the_size_warms_half_as_much_by_the_same_loss():
+    one, two = ServoHeat(np.array([5.0])), ServoHeat(np.array([5.0]), np.array([2.0]))
+    for _ in range(2000):
+        one.advance(np.array([0.05]), 0.05)
+        two.advance(np.array([0.05]), 0.05)
+    assert two.case[0] - AMBIENT == pytest.approx((one.case[0] - AMBIENT) / 2, rel=0.02)
+
+
 @pytest.fixture
 def desk(in_the_air):
     def make(*overrides):

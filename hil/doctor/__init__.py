@@ -1,0 +1,1 @@
+"""What this computer lacks to run a robot, each with its remedy."""

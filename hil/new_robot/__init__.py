@@ -1,0 +1,1 @@
+"""A robot folder from a model that somebody else wrote: MJCF or URDF in, YAML and MJCF out."""
