@@ -1,15 +1,13 @@
 """Two walks side by side: figures, joints over the stride, forces, timing."""
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from hil.errors import InputError
 from hil.gait_report import gait_figures, measured_from, percentiles_ms
 from hil.interface import Floats
-from hil.recording import read_recording
+from hil.recording import Recording
 from hil.trace import Trace
 
 STRIDE_BINS = 40
@@ -55,13 +53,10 @@ class Figure:
         return 100.0 * self.difference / abs(self.first)
 
 
-def read_walk(folder: Path) -> Walk:
-    """A recorded run. Raises InputError when it holds no walk."""
-    recording = read_recording(folder)
+def walk_of(name: str, recording: Recording) -> Walk | None:
+    """The walk in a recording; None where it holds none, as of a hoisted or a standing run."""
     trace = recording.trace()
-    if len(trace) < 2:
-        raise InputError(f"{folder}: the recording ends before the first walking tick")
-    return Walk(folder.resolve().name, recording.meta, trace)
+    return Walk(name, recording.meta, trace) if len(trace) > 1 else None
 
 
 def compare_walks(first: Walk, second: Walk) -> list[Figure]:

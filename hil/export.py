@@ -4,11 +4,13 @@ import csv
 import json
 import math
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any, TextIO
 
 import numpy as np
 
 from hil.interface import CORNERS, SIDES
+from hil.recorder_file import TickFile
 from hil.recording import Recording
 
 QUATERNION = ("w", "x", "y", "z")
@@ -33,6 +35,12 @@ def write_json_lines(recording: Recording, stream: TextIO) -> None:
         stream.write(json.dumps(tick, allow_nan=False) + "\n")
 
 
+def write_mcap(recording: Recording, path: Path) -> None:
+    """The recording as a finished MCAP file, whatever was missing at the end of its own."""
+    with TickFile(path, recording.rows.dtype, recording.meta) as file:
+        file.write(recording.rows)
+
+
 def _columns(recording: Recording) -> Iterator[tuple[str, np.ndarray[Any, np.dtype[Any]]]]:
     rows, joints = recording.rows, recording.meta["joints"]
     for topic in rows.dtype.names or ():
@@ -43,11 +51,12 @@ def _columns(recording: Recording) -> Iterator[tuple[str, np.ndarray[Any, np.dty
         for name in names:
             values = rows[topic][name]
             flat = values.reshape(len(rows), -1)
-            for index, label in enumerate(_labels(values.shape[1:], joints)):
+            for index, label in enumerate(labels_of(values.shape[1:], joints)):
                 yield f"{topic}.{name}{label}", flat[:, index]
 
 
-def _labels(shape: tuple[int, ...], joints: list[str]) -> list[str]:
+def labels_of(shape: tuple[int, ...], joints: list[str]) -> list[str]:
+    """Names of the elements of a recorded field of this shape, each with a dot before it."""
     known: dict[tuple[int, ...], list[str]] = {
         (): [""],
         (2,): [f".{side}" for side in SIDES],

@@ -9,7 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from hil.description import RobotDescription
-from hil.figure_robot import BODY, LEFT, RIGHT, Outline
+from hil.figure_robot import Outline
+from hil.figure_style import BODY, LEFT, LIMIT, RIGHT, STYLE, WARNING, WATER
 from hil.gait_report import gait_figures
 from hil.interface import CORNERS, Floats
 from hil.trace import Trace
@@ -17,22 +18,9 @@ from hil.trace import Trace
 INSTANTS = 10
 STRIP_STEPS = 4
 FORCE_WINDOW_S = 4.0
-STYLE = {
-    "font.size": 9.0,
-    "axes.titlesize": 10.0,
-    "axes.titlelocation": "left",
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.edgecolor": "#9a9ea4",
-    "axes.grid": True,
-    "grid.color": "#e6e8ea",
-    "legend.frameon": False,
-    "text.color": "#2b2e33",
-    "axes.labelcolor": "#2b2e33",
-}
 
 
-OFF_THE_GROUND = (", stand", ", sit", ", hoisted")
+OFF_THE_GROUND = (", stand", ", sit", ", hoisted", ", jump")
 """Ends of the names of rungs on which no distance is walked."""
 
 
@@ -40,17 +28,24 @@ def draw_run(trace: Trace, description: RobotDescription, meta: dict[str, Any], 
     """Write the picture of a run to a file whose suffix says the format."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(12, 8.4), layout="constrained")
-        grid = figure.add_gridspec(3, 6, height_ratios=(1.25, 1, 1))
-        draw_strip(figure.add_subplot(grid[0, :]), trace, description)
-        draw_speed(figure.add_subplot(grid[1, :4]), trace)
-        draw_timing(figure.add_subplot(grid[1, 4:]), trace, meta)
-        left, right = figure.add_subplot(grid[2, :3]), figure.add_subplot(grid[2, 3:])
-        for foot, axes in enumerate((left, right)):
-            draw_corners(axes, trace, foot, meta["weight_n"])
-        right.sharey(left)
-        right.set_ylabel("")
-        figure.suptitle(title(trace, meta), x=0.01, ha="left", fontsize=12, fontweight="bold")
+        draw_run_figure(figure, trace, description, meta)
         figure.savefig(path, dpi=130)
+
+
+def draw_run_figure(
+    figure: Figure, trace: Trace, description: RobotDescription, meta: dict[str, Any]
+) -> None:
+    """The picture of a run in a figure that is empty."""
+    grid = figure.add_gridspec(3, 6, height_ratios=(1.25, 1, 1))
+    draw_strip(figure.add_subplot(grid[0, :]), trace, description)
+    draw_speed(figure.add_subplot(grid[1, :4]), trace)
+    draw_timing(figure.add_subplot(grid[1, 4:]), trace, meta)
+    left, right = figure.add_subplot(grid[2, :3]), figure.add_subplot(grid[2, 3:])
+    for foot, axes in enumerate((left, right)):
+        draw_corners(axes, trace, foot, meta["weight_n"])
+    right.sharey(left)
+    right.set_ylabel("")
+    figure.suptitle(title(trace, meta), x=0.01, ha="left", fontsize=12, fontweight="bold")
 
 
 def title(trace: Trace, meta: dict[str, Any]) -> str:
@@ -75,7 +70,8 @@ def draw_strip(axes: Axes, trace: Trace, description: RobotDescription) -> None:
     for place, tick in enumerate(ticks):
         outline.draw(axes, trace, int(tick), place * spacing)
         label = f"{trace.time_s[tick]:.2f} s"
-        axes.text(place * spacing, -0.12 * height, label, ha="center", va="top", color="#6b7078")
+        _draw_water(axes, place * spacing, 0.45 * spacing, float(trace.water_level[tick]))
+        axes.text(place * spacing, -0.12 * height, label, ha="center", va="top", color=LIMIT)
     axes.axhline(0.0, color="#9a9ea4", linewidth=1.0, zorder=0)
     axes.set_xlim(-0.75 * spacing, (len(ticks) - 0.25) * spacing)
     axes.set_aspect("equal")
@@ -84,6 +80,14 @@ def draw_strip(axes: Axes, trace: Trace, description: RobotDescription) -> None:
     axes.axis("off")
     for place, (name, colour) in enumerate((("left", LEFT), ("right", RIGHT))):
         axes.text(0.0, 0.97 - 0.1 * place, name, color=colour, transform=axes.transAxes, va="top")
+
+
+def _draw_water(axes: Axes, centre: float, half: float, level: float) -> None:
+    """The liquid around one outline, its surface a line; nothing on dry land [m]."""
+    if level > 0:
+        sides = (centre - half, centre + half)
+        axes.fill_between(sides, 0.0, level, color=WATER, alpha=0.3, linewidth=0, zorder=8)
+        axes.plot(sides, (level, level), color=WATER, linewidth=1.2, zorder=8)
 
 
 def strip_ticks(trace: Trace) -> np.ndarray:
@@ -101,7 +105,7 @@ def draw_speed(axes: Axes, trace: Trace) -> None:
     along = forward_speed(trace)
     axes.plot(trace.time_s, along, color="#c9ccd1", linewidth=0.8, label="centre of mass")
     axes.plot(trace.time_s, over_a_stride(trace, along), color=BODY, label="over one stride")
-    axes.plot(trace.time_s, trace.speed, color="#c1272d", linestyle="--", label="commanded")
+    axes.plot(trace.time_s, trace.speed, color=WARNING, linestyle="--", label="commanded")
     axes.set(title="Speed along the heading", xlabel="time [s]", ylabel="[m/s]")
     low, high = axes.get_ylim()
     axes.margins(x=0)
@@ -135,8 +139,8 @@ def draw_corners(axes: Axes, trace: Trace, foot: int, weight_n: float) -> None:
     for corner, colour in enumerate((LEFT, RIGHT, "#e9b872", "#7fb2cf")):
         axes.plot(time, forces[:, corner], color=colour, linewidth=1.0)
         axes.plot([], [], color=colour, label=CORNERS[corner].replace("_", " "))
-    axes.axhline(weight_n, color="#6b7078", linestyle=":", linewidth=1.0)
-    axes.text(time[0], weight_n, " weight", fontsize=8, color="#6b7078", va="bottom")
+    axes.axhline(weight_n, color=LIMIT, linestyle=":", linewidth=1.0)
+    axes.text(time[0], weight_n, " weight", fontsize=8, color=LIMIT, va="bottom")
     side = ("Left", "Right")[foot]
     axes.set(title=f"{side} foot: corner forces", xlabel="time [s]", ylabel="[N]")
     axes.margins(x=0)
@@ -154,11 +158,11 @@ def draw_timing(axes: Axes, trace: Trace, meta: dict[str, Any]) -> None:
     for label, values, colour in columns:
         axes.hist(values * 1e-6, bins=bins, color=colour, alpha=0.75, label=label)
     axes.set_ylim(0, 1.3 * axes.get_ylim()[1])  # room for the legend
-    axes.axvline(period_ms, color="#6b7078", linestyle=":", linewidth=1.0)
+    axes.axvline(period_ms, color=LIMIT, linestyle=":", linewidth=1.0)
     clock = "lockstep" if meta["lockstep"] else "real time"
     axes.set(xscale="log", title=f"Wall time of a tick ({clock})", xlabel="[ms]", ylabel="ticks")
     axes.annotate(
         "period", (period_ms, 0.97), xycoords=("data", "axes fraction"), rotation=90,
-        ha="right", va="top", fontsize=8, color="#6b7078",
+        ha="right", va="top", fontsize=8, color=LIMIT,
     )  # fmt: skip
     axes.legend(loc="upper left")

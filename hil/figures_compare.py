@@ -8,8 +8,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from hil.compare import STRIDE_BINS, Walk, stance_load, stride_profile
-from hil.figure_robot import LEFT, RIGHT
-from hil.figures import STYLE, forward_speed, over_a_stride
+from hil.figure_style import LEFT, RIGHT, STYLE
+from hil.figures import forward_speed, over_a_stride
 
 JOINTS = ("hip_roll", "hip_pitch", "knee", "ankle_pitch", "ankle_roll")
 """Joints of the left leg that are drawn, where a robot has them."""

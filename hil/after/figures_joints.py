@@ -8,11 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from hil.after.comparison import Comparison
-from hil.figure_robot import LEFT, RIGHT
-from hil.figures import STYLE
+from hil.figure_style import LEFT, RIGHT, STYLE, WARNING
 
 COLOURS = (LEFT, RIGHT)
-WARNING = "#c1272d"
 SHOWN_S = 1.5
 """Of a twin, from the middle of the run."""
 COLUMNS = 6

@@ -88,16 +88,20 @@ class RecordedRun:
 
 
 def read_run(folder: Path, robot: str | None = None) -> RecordedRun:
-    """A recorded run with its robot, or with another robot file. Raises InputError.
+    """A recorded run with its robot, or with another robot file. Raises InputError."""
+    return run_of(folder.resolve().name, read_recording(folder), robot)
+
+
+def run_of(name: str, recording: Recording, robot: str | None = None) -> RecordedRun:
+    """A recording with its robot, or with another robot file. Raises InputError.
 
     The robot is that of the run's own request, `--set` changes included.
     """
-    recording = read_recording(folder)
     request = recording.meta["request"]
     overrides = tuple(request["overrides"]) if robot is None else ()
     description = load_robot(robot or request["robot"], overrides)
     if list(description.joint_names) != recording.meta["joints"]:
         raise InputError(
-            f"{folder}: {description.file} has other joints than the robot of the recording"
+            f"{name}: {description.file} has other joints than the robot of the recording"
         )
-    return RecordedRun(folder.resolve().name, recording, description)
+    return RecordedRun(name, recording, description)

@@ -1,16 +1,14 @@
 """`stride twin`: the goals of a recorded run, at their times, through a virtual robot."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from hil.after.load_model import LoadModel
 from hil.after.measured_motion import measured_motion
 from hil.after.recorded import TWIN, RecordedRun, read_run
 from hil.after.signs import require_registers
+from hil.after.ticks import fill
 from hil.compose import TwinParts, build_twin
 from hil.cycle import SafetyStatus, TickRecord
 from hil.errors import InputError
@@ -54,14 +52,6 @@ class RecordedController:
         return self.command
 
 
-@dataclass(frozen=True, slots=True)
-class Twin:
-    """A replay that is over."""
-
-    folder: Path
-    report: dict[str, Any]
-
-
 def twin_request(
     run: RecordedRun,
     robot: str | None,
@@ -88,8 +78,8 @@ def twin_request(
     )
 
 
-def replay(run: RecordedRun, request: RunRequest, *, progress: bool = True) -> Twin:
-    """Send a run's goals to a virtual robot, and write a run folder.
+def replay(run: RecordedRun, request: RunRequest, *, progress: bool = True) -> Path:
+    """Send a run's goals to a virtual robot; the run folder that was written.
 
     Every register is written in the tick in which the run wrote it, through the driver's own bus.
     Ticks that the run missed are passed over as it did: the last goals stand. Raises InputError
@@ -123,8 +113,8 @@ def replay(run: RecordedRun, request: RunRequest, *, progress: bool = True) -> T
     finally:
         with signals.shielded():
             stop_and_close(session)
-        report = books.close(outcome)
-    return Twin(books.folder, report)
+        books.close(outcome)
+    return books.folder
 
 
 def replay_folder(folder: Path, robot: str | None = None) -> RecordedRun:
@@ -213,13 +203,3 @@ class _Player:
         for sink in self._sinks:
             sink.put(record)
         schedule.finish()
-
-
-def fill(target: Any, row: Any) -> None:
-    """Put one topic of a recorded tick into the object that it was made from."""
-    for name in row.dtype.names:
-        value = row[name]
-        if isinstance(value, np.ndarray) and value.ndim:
-            getattr(target, name)[...] = value
-        elif hasattr(target, name):
-            setattr(target, name, value.item())

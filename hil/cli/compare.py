@@ -4,13 +4,17 @@ import json
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 from typer import Argument, Option
 
 if TYPE_CHECKING:
     from hil.after.comparison import Comparison
     from hil.compare import Figure, Walk
+    from hil.recording import Recording
+
+T = TypeVar("T")
+Pair = tuple[T, T]
 
 EPILOG = """[bold]Example[/bold]
 
@@ -39,12 +43,14 @@ def compare(
     do is named with its number (docs/after-a-run.md). A second picture, `-joints`, shows them.
     """
     from hil.errors import InputError
+    from hil.recording import read_recording
 
-    walks = _walks(first, second)
-    comparison, why_not = _joints(first, second)
+    names = (first.resolve().name, second.resolve().name)
+    recordings = (read_recording(first), read_recording(second))
+    walks = _walks(names, recordings)
+    comparison, why_not = _joints(names, recordings)
     if walks is None and comparison is None:
         raise InputError(f"neither a walk to compare nor joints: {why_not}")
-    names = (first.resolve().name, second.resolve().name)
     path = out or second / f"compare-{names[0]}.png"
     pictures = _draw(walks, comparison, names, path)
     if as_json:
@@ -63,36 +69,33 @@ def compare(
     sys.stdout.writelines(f"{picture}\n" for picture in pictures)
 
 
-def _walks(first: Path, second: Path) -> "tuple[Walk, Walk] | None":
-    """Both walks; none where a run is a hoisted or a standing one."""
-    from hil.compare import read_walk
-    from hil.errors import InputError
-    from hil.recording import read_recording
+def _walks(names: Pair[str], recordings: "Pair[Recording]") -> "Pair[Walk] | None":
+    """Both walks; none where a run has none."""
+    from hil.compare import walk_of
 
-    try:
-        return read_walk(first), read_walk(second)
-    except InputError:
-        for folder in (first, second):
-            read_recording(folder)  # raises again what is not about walking
-        return None
+    first, second = (walk_of(*run) for run in zip(names, recordings, strict=True))
+    return None if first is None or second is None else (first, second)
 
 
-def _joints(first: Path, second: Path) -> "tuple[Comparison | None, str | None]":
+def _joints(
+    names: Pair[str], recordings: "Pair[Recording]"
+) -> "tuple[Comparison | None, str | None]":
     """The comparison joint by joint, or why there is none."""
     from hil.after.comparison import compare_runs
-    from hil.after.recorded import read_run
+    from hil.after.recorded import run_of
     from hil.errors import InputError
 
     try:
-        return compare_runs(read_run(first), read_run(second)), None
+        first, second = (run_of(*run) for run in zip(names, recordings, strict=True))
+        return compare_runs(first, second), None
     except InputError as error:
         return None, str(error)
 
 
 def _draw(
-    walks: "tuple[Walk, Walk] | None",
+    walks: "Pair[Walk] | None",
     comparison: "Comparison | None",
-    names: tuple[str, str],
+    names: Pair[str],
     path: Path,
 ) -> list[Path]:
     """Write the pictures that there is something for."""
@@ -120,7 +123,7 @@ def _written(path: Path, draw: Callable[[Path], None]) -> Path:
 
 
 def _as_dict(
-    walks: "tuple[Walk, Walk] | None", comparison: "Comparison | None", why_not: str | None
+    walks: "Pair[Walk] | None", comparison: "Comparison | None", why_not: str | None
 ) -> dict[str, Any]:
     from hil.compare import compare_walks
 
@@ -141,8 +144,9 @@ def _as_dict(
 
 
 def _print_figures(a: "Walk", b: "Walk") -> None:
-    from hil.cli.table import number, print_rows
+    from hil.cli.table import print_rows
     from hil.compare import compare_walks
+    from hil.report_words import number
 
     rows = [
         (

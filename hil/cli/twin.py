@@ -51,12 +51,12 @@ def twin(
 
     recorded = replay_folder(run, robot)
     request = twin_request(recorded, robot, tuple(overrides or ()), seed, out or _unused(run))
-    done = replay(recorded, request, progress=not as_json)
-    other = read_run(done.folder)
+    folder = replay(recorded, request, progress=not as_json)
+    other = read_run(folder)
     comparison = compare_runs(other, recorded)
     labels = (f"twin of {recorded.name}", recorded.name)
-    draw_joints(comparison, labels, done.folder / "joints.png")
-    _show(comparison, recorded, done.folder, as_json=as_json)
+    draw_joints(comparison, labels, folder / "joints.png")
+    _show(comparison, recorded, folder, as_json=as_json)
 
 
 def _unused(run: Path) -> Path:

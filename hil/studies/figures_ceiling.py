@@ -6,8 +6,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
 
-from hil.figure_robot import BODY, LEFT, RIGHT
-from hil.figures import STYLE
+from hil.figure_style import BODY, LEFT, RIGHT, STYLE
 from hil.studies.study import Result
 
 

@@ -11,8 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from hil.description import RobotDescription
-from hil.figure_robot import BODY, LEFT, RIGHT
-from hil.figures import STYLE
+from hil.figure_style import BODY, LEFT, RIGHT, STYLE
 from hil.joint_gains import GainSet
 from hil.studies.ceiling_rows import ALL
 from hil.studies.gain_sets import sum_of, total_of

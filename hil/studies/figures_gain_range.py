@@ -6,8 +6,7 @@ import matplotlib as mpl
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from hil.figure_robot import LEFT, RIGHT
-from hil.figures import STYLE
+from hil.figure_style import LEFT, RIGHT, STYLE
 from hil.studies.gain_sets import sum_of
 from hil.studies.study import Result
 

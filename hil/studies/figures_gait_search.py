@@ -7,8 +7,7 @@ from pathlib import Path
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
-from hil.figure_robot import BODY, LEFT, RIGHT
-from hil.figures import STYLE
+from hil.figure_style import BODY, LEFT, RIGHT, STYLE
 
 
 @dataclass(frozen=True, slots=True)

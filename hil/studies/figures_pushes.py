@@ -9,8 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MultipleLocator
 
-from hil.figure_robot import LEFT, RIGHT
-from hil.figures import STYLE
+from hil.figure_style import LEFT, RIGHT, STYLE
 from hil.studies.study import Result
 
 ANGLES_DEG = {

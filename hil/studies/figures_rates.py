@@ -5,9 +5,7 @@ from pathlib import Path
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
-from hil.figure_robot import LEFT
-from hil.figures import STYLE
-from hil.studies.figures_speeds import FALLEN
+from hil.figure_style import LEFT, STYLE, WARNING
 from hil.studies.study import Result
 
 
@@ -28,7 +26,7 @@ def draw_rates(title: str, rows: list[Result], duration_s: float, length: str, p
                 period, end = row["period_froude"], row["stopped_s"]
                 if row["error"]:
                     end = 0.0
-                marker, colour = ("o", LEFT) if end is None else ("x", FALLEN)
+                marker, colour = ("o", LEFT) if end is None else ("x", WARNING)
                 time_s = duration_s if end is None else end
                 axes.plot([period], [time_s], marker=marker, color=colour)
             axes.set(xscale="log", ylim=(-0.1 * duration_s, 1.2 * duration_s))

@@ -5,8 +5,7 @@ from pathlib import Path
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
-from hil.figure_robot import LEFT, RIGHT
-from hil.figures import STYLE
+from hil.figure_style import LEFT, RIGHT, STYLE
 from hil.studies.study import Result
 
 COLOURS = (LEFT, RIGHT, "#6a6f75", "#9a9ea4")

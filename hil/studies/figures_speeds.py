@@ -5,11 +5,8 @@ from pathlib import Path
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
-from hil.figure_robot import BODY, LEFT
-from hil.figures import STYLE
+from hil.figure_style import BODY, LEFT, STYLE, WARNING
 from hil.studies.study import Result
-
-FALLEN = "#c1272d"
 
 
 def draw_speeds(title: str, rows: list[Result], path: Path) -> None:
@@ -30,7 +27,7 @@ def draw_speeds(title: str, rows: list[Result], path: Path) -> None:
             (walked, ("target_mps", "target_coronal_mps"), {"marker": "o", "mfc": "none",
              "mec": BODY, "ms": 9}, "commanded"),
             (walked, ("speed_mps", "coronal_mps"), {"marker": ".", "color": LEFT}, "reached"),
-            (fallen, ("target_mps", "target_coronal_mps"), {"marker": "x", "color": FALLEN,
+            (fallen, ("target_mps", "target_coronal_mps"), {"marker": "x", "color": WARNING,
              "ms": 9}, "fell"),
         ):  # fmt: skip
             x, y = [[row[key] for row in chosen] for key in keys]

@@ -7,8 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from hil.figure_robot import RIGHT
-from hil.figures import STYLE
+from hil.figure_style import RIGHT, STYLE
 from hil.studies.study import Result
 
 

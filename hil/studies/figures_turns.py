@@ -5,8 +5,7 @@ from pathlib import Path
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
-from hil.figures import STYLE
-from hil.studies.figures_speeds import FALLEN
+from hil.figure_style import STYLE, WARNING
 from hil.studies.study import Result
 
 PANELS = (
@@ -28,7 +27,7 @@ def draw_turns(title: str, rows: list[Result], path: Path) -> None:
                 axes.plot(x, [row[key] for row in points], "o-", label=kind)
             fallen = [row["angle_deg"] for row in rows if row["stopped_s"] is not None]
             bottom = axes.get_ylim()[0]
-            axes.plot(fallen, [bottom] * len(fallen), "x", color=FALLEN, label="fell")
+            axes.plot(fallen, [bottom] * len(fallen), "x", color=WARNING, label="fell")
             axes.set(title=label, xlabel="angle [deg]")
         figure.legend(*axes.get_legend_handles_labels(), loc="outside right center", fontsize=8)
         figure.suptitle(title, x=0.01, ha="left", fontweight="bold")

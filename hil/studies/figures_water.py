@@ -5,11 +5,9 @@ from pathlib import Path
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
-from hil.figure_robot import BODY, LEFT
-from hil.figures import STYLE
+from hil.figure_style import BODY, LEFT, STYLE, WARNING
 from hil.studies.study import Result
 
-FALLEN = "#c1272d"
 SHADES = ("#9ecae1", "#6baed6", "#4292c6", "#2171b5", "#08519c", "#08306b")
 
 
@@ -24,7 +22,7 @@ def draw_water(title: str, rows: list[Result], path: Path) -> None:
             (walked, "target_mps", {"marker": "o", "mfc": "none", "mec": BODY, "ms": 9},
              "commanded"),
             (walked, "speed_mps", {"marker": ".", "color": LEFT}, "reached"),
-            (fallen, "target_mps", {"marker": "x", "color": FALLEN, "ms": 8}, "did not walk"),
+            (fallen, "target_mps", {"marker": "x", "color": WARNING, "ms": 8}, "did not walk"),
         ):  # fmt: skip
             x, y = [row["level_m"] for row in chosen], [row[key] for row in chosen]
             left.plot(x, y, linestyle="none", label=label, **style)

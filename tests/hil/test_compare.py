@@ -8,6 +8,7 @@ from typer.testing import CliRunner
 
 from hil.cli.main import app
 from hil.compare import STRIDE_BINS, Walk, compare_walks, joint_rms_difference, stride_profile
+from hil.recording import read_recording
 from hil.run import run
 
 META = {"weight_n": 100.0, "joints": [f"j{i}" for i in range(12)], "rung": "simulation"}
@@ -51,5 +52,13 @@ def test_the_command_prints_json_and_draws(tmp_path, monkeypatch):
     assert figures["joint_rms_difference_rad"]["difference"] == pytest.approx(0.0)
     assert (tmp_path / "b" / "compare-a.png").read_bytes().startswith(b"\x89PNG")
     monkeypatch.setattr("hil.figures_compare.draw_comparison", lambda *_: None)
+    read = []
+
+    def counted(folder):
+        read.append(folder.name)
+        return read_recording(folder)
+
+    monkeypatch.setattr("hil.recording.read_recording", counted)
     table = CliRunner().invoke(app, ["compare", *folders])
     assert "mean_speed_mps" in table.output
+    assert read == ["a", "b"]  # a recording of ten minutes takes its time to read

@@ -1,23 +1,30 @@
 """The recorder with its real process and real files, killed in every way."""
 
+import contextlib
 import os
 import signal
+import struct
 import subprocess
 import sys
 import time
+from io import BytesIO
 from pathlib import Path
 
 import numpy as np
 import pytest
 from hil_fakes import make_session
-from mcap.reader import make_reader
+from mcap.exceptions import McapError
+from mcap.reader import NonSeekingReader, make_reader
+from mcap.writer import MCAP0_MAGIC
+from mcap_ros2.decoder import DecoderFactory
 
 from hil.errors import BackendError, InputError
+from hil.export import write_mcap
 from hil.loop import Loop
 from hil.record_layout import message_definition, parse_definition, tick_dtype, topic_dtype, topics
 from hil.recorder import Recorder
 from hil.recorder_ring import Ring
-from hil.recording import read_recording
+from hil.recording import RECORD_HEADER, Recording, read_recording
 from hil.run_folder import make_meta
 from hil.trace import TraceSink
 
@@ -150,22 +157,95 @@ def test_a_killed_recorder_too_leaves_one_that_can_be_read(tmp_path):
     assert np.diff(ticks).min() > 0  # a busy machine may skip some
 
 
-def test_every_cut_of_a_file_reads_as_a_beginning_of_it(tmp_path):
+@pytest.fixture
+def small_chunks(tmp_path, monkeypatch):
+    """A recording of several chunks, its bytes, and how long it is at the end of every record."""
+    monkeypatch.setattr("hil.recorder_file.CHUNK_BYTES", 20_000)
     record(tmp_path)
-    whole = read_recording(tmp_path).rows
-    data = (tmp_path / "session.mcap").read_bytes()
-    cut_folder = tmp_path / "cut"
-    cut_folder.mkdir()
+    recording = read_recording(tmp_path)
+    write_mcap(Recording(recording.meta, recording.rows[:120], True), tmp_path / "small.mcap")
+    data = (tmp_path / "small.mcap").read_bytes()
+    ends, end = [], len(MCAP0_MAGIC)
+    while end + RECORD_HEADER.size <= len(data):
+        end += RECORD_HEADER.size + RECORD_HEADER.unpack_from(data, end)[1]
+        ends.append(end)
+    return recording.rows[:120], data, ends
+
+
+def cuts(data, ends):
+    """Lengths at, before and behind the end of every record, and some anywhere."""
+    around = {end + shift for end in ends[::2] for shift in (-1, 0, 5)}
+    anywhere = np.random.default_rng(1).integers(0, len(data), 20).tolist()
+    return sorted(size for size in around | set(anywhere) if 0 <= size < len(data))
+
+
+def test_every_cut_of_a_file_reads_as_a_beginning_of_it(tmp_path, small_chunks):
+    whole, data, ends = small_chunks
     lengths = []
-    for size in np.linspace(len(data) // 50, len(data) - 1, 23).astype(int):
-        (cut_folder / "session.mcap").write_bytes(data[:size])
+    for size in cuts(data, ends):
+        (tmp_path / "session.mcap").write_bytes(data[:size])
         try:
-            rows = read_recording(cut_folder).rows
+            recording = read_recording(tmp_path)
         except InputError:  # cut before the first chunk
-            rows = whole[:0]
-        assert rows.tobytes() == whole[: len(rows)].tobytes()
-        lengths.append(len(rows))
+            lengths.append(0)
+            continue
+        assert recording.rows.tobytes() == whole[: len(recording.rows)].tobytes()
+        assert not recording.complete or size > ends[-3]
+        lengths.append(len(recording.rows))
     assert lengths == sorted(lengths) and lengths[-1] == len(whole)
+    assert len(set(lengths)) >= 5  # a chunk more, some ticks more
+
+
+def test_the_readers_of_the_mcap_package_read_a_cut_file_up_to_its_last_whole_chunk(
+    tmp_path, small_chunks
+):
+    _, data, ends = small_chunks
+    for size in cuts(data, ends):
+        theirs = read_as_far_as_it_goes(data[:size])
+        (tmp_path / "session.mcap").write_bytes(data[:size])
+        try:
+            ours = len(read_recording(tmp_path).rows)
+        except InputError:
+            ours = 0
+        assert theirs == ours
+
+
+def read_as_far_as_it_goes(data):
+    """Whole ticks that mcap's own streaming reader gives of a file."""
+    counts = dict.fromkeys(range(1, 10), 0)
+    messages = NonSeekingReader(BytesIO(data)).iter_messages(log_time_order=False)
+    with contextlib.suppress(McapError, struct.error):
+        for _, channel, _ in messages:
+            counts[channel.id] += 1
+    return min(counts.values())
+
+
+def test_a_cut_file_is_mended_for_tools_that_want_its_end(tmp_path, small_chunks):
+    whole, data, _ = small_chunks
+    (tmp_path / "session.mcap").write_bytes(data[: len(data) // 2])
+    cut = read_recording(tmp_path)
+    assert not cut.complete and 0 < len(cut.rows) < len(whole)
+    write_mcap(cut, tmp_path / "mended.mcap")
+    with (tmp_path / "mended.mcap").open("rb") as stream:
+        counts = make_reader(stream).get_summary().statistics.channel_message_counts
+    assert set(counts.values()) == {len(cut.rows)}
+
+
+def test_a_decoder_of_somebody_else_finds_every_number(tmp_path):
+    """By the definitions that are in the file alone, as Foxglove and the ROS tools do."""
+    record(tmp_path)
+    rows = read_recording(tmp_path).rows
+    taken = dict.fromkeys(rows.dtype.names, 0)
+    with (tmp_path / "session.mcap").open("rb") as stream:
+        reader = make_reader(stream, decoder_factories=[DecoderFactory()])
+        for _, channel, _, message in reader.iter_decoded_messages():
+            topic = channel.topic.removeprefix("/")
+            row = rows[topic][taken[topic]]
+            taken[topic] += 1
+            for name in row.dtype.names if taken[topic] % 50 == 1 else ():
+                theirs = np.array(getattr(message, name)).reshape(row[name].shape)
+                assert np.array_equal(theirs, row[name], equal_nan=theirs.dtype.kind == "f"), name
+    assert {taken[name] for name in rows.dtype.names if rows.dtype[name].names} == {750}
 
 
 @pytest.mark.parametrize("content", [b"", b"not mcap at all", b"\x89MCAP0\r\n"])
@@ -191,6 +271,21 @@ def test_in_real_time_a_full_ring_drops_and_counts(tmp_path):
     recorded = len(read_recording(tmp_path).rows)
     assert recorder.dropped > 0
     assert recorded + recorder.dropped == 6450
+
+
+def test_a_writer_that_stands_still_for_seconds_costs_no_tick(tmp_path):
+    """4.6 s of ticks while it is stopped: a tick that waited for it would wait for ever."""
+    session = make_session(world=True, realtime=True, duration_s=2.0)
+    recorder = Recorder(tmp_path, make_meta(session), truth=True, progress=False)
+    os.kill(recorder._process.pid, signal.SIGSTOP)
+    try:
+        session.backend.open()
+        Loop(session, (recorder,)).run()
+    finally:
+        os.kill(recorder._process.pid, signal.SIGCONT)
+    recorder.close()
+    assert recorder.dropped == 0
+    assert read_recording(tmp_path).rows["timing"]["tick"].tolist() == list(range(-450, 930))
 
 
 def test_in_lockstep_nothing_is_dropped_however_slow_the_disk(tmp_path):

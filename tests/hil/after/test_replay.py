@@ -49,7 +49,7 @@ def twin_of(folder, out, *changes):
 
 def test_a_twin_is_told_what_the_run_told_its_servos_and_does_the_same(dry, tmp_path):
     done = twin_of(dry, tmp_path / "twin")
-    rows, other = read_recording(dry).rows, read_recording(done.folder).rows
+    rows, other = read_recording(dry).rows, read_recording(done).rows
     rows = rows[(rows["applied"]["p_gain"] > 0).any(axis=1)]
     for topic, name in (("timing", "tick"), ("applied", "goal"), ("applied", "p_gain"),
                         ("command", "torque"), ("status", "phase")):  # fmt: skip
@@ -61,10 +61,10 @@ def test_a_twin_is_told_what_the_run_told_its_servos_and_does_the_same(dry, tmp_
     assert np.abs(carried[walked]).max() < 0.004
     loads = np.abs(other["frame"]["foot_force"] - rows["frame"]["foot_force"])[walked]
     assert loads.mean() < 1.0
-    meta = json.loads((done.folder / "meta.json").read_text())
+    meta = json.loads((done / "meta.json").read_text())
     assert meta["rung"] == TWIN
     assert meta["twin_of"]["name"] == "run"
-    found = compare_runs(read_run(done.folder), read_run(dry))
+    found = compare_runs(read_run(done), read_run(dry))
     assert found.curves.aligned == "tick"
     assert [str(one) for one in found.findings] == []
 

@@ -1,0 +1,1 @@
+"""A recorded run as a film: drawn off screen, no window and no display."""

@@ -1,0 +1,1 @@
+"""Plots of one recorded run: each module draws one question that a walk is asked."""
