@@ -30,8 +30,9 @@ import numpy as np
 from rich.markup import escape
 
 from drivers.calibration import RobotCalibration, save_calibration
-from hil.cli.table import number, print_rows
+from hil.cli.table import print_rows
 from hil.errors import BackendError
+from hil.report_words import number
 from hil.robot_files import find_robot_file, load_robot
 from sim_backends.virtual.remote import RemoteWorld
 

@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 
 from hil.description import RobotDescription
 from hil.figure_robot import Outline
-from hil.figures import STYLE
+from hil.figure_style import LIMIT, STYLE
 from hil.recording import read_recording
 from hil.robot_files import load_robot
 from hil.trace import Trace
@@ -45,7 +45,7 @@ def draw_rung(axes: Axes, name: str, trace: Trace, robot: RobotDescription, lift
         outline.draw(axes, trace, int(tick), place * spacing)
         axes.text(
             place * spacing, -0.03, f"{trace.time_s[tick]:.1f} s", ha="center", va="top",
-            color="#6b7078", fontsize=8,
+            color=LIMIT, fontsize=8,
         )  # fmt: skip
     axes.axhline(0.0, color="#9a9ea4", linewidth=1.0, zorder=0)
     axes.set_xlim(-0.75 * spacing, (INSTANTS - 0.25) * spacing)

@@ -6,6 +6,8 @@ from drivers.commissioning import workshop as commissioning
 from drivers.dynamixel.gain_facts import feasible_gains, servo_facts
 from drivers.dynamixel.hot_path_bench import measure_hot_path
 from hil.compose.ceilings import bus_delay_s, gain_ceiling, servo_ceiling
+from hil.compose.jumps import default_push_depth
+from hil.compose.reruns import RerunParts, build_rerun
 from hil.compose.sessions import build, build_robot
 from hil.compose.twins import TwinParts, build_twin, driver_motors
 from hil.compose.virtual_hand import virtual_hand
@@ -13,13 +15,16 @@ from hil.compose.workbench import hoist, model_comparison, serve_virtual, servo_
 
 __all__ = [
     "BusMeasurement",
+    "RerunParts",
     "TwinParts",
     "build",
+    "build_rerun",
     "build_robot",
     "build_twin",
     "bus_budgets",
     "bus_delay_s",
     "commissioning",
+    "default_push_depth",
     "driver_motors",
     "feasible_gains",
     "gain_ceiling",

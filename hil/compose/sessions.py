@@ -9,6 +9,8 @@ from controller.estimation.hanging import HangingEstimator
 from controller.estimation.sensors import SensorEstimator
 from controller.estimation.truth import TruthEstimator
 from controller.holding import PoseHolder
+from controller.jumping.jump_controller import JumpController
+from controller.jumping.servo_hop import ServoHop
 from controller.walking.servo_walker import ServoWalker
 from controller.walking.torque_walker import TorqueWalker
 from drivers.calibration import RobotCalibration, load_calibration
@@ -17,6 +19,7 @@ from drivers.motor_constants import motor_parameters
 from drivers.robot_backend import BusBackend
 from hil.bringup.ladder import calibration_file, on_the_ground, require_hoisted_walk
 from hil.clock import MonotonicClock
+from hil.compose.jumps import jump_changes, jump_controller, jump_reporter
 from hil.description import RobotDescription
 from hil.errors import DescriptionError, InputError
 from hil.interface import Controller, Estimator, WalkStatus, World
@@ -25,6 +28,7 @@ from hil.robot_files import load_robot
 from hil.servo import MotorParameters
 from hil.session import Session
 from hil.start_plan import sit_position
+from hil.submerged import WATER_DENSITY
 from hil.validation import validate
 from sim_backends.draws import hidden_values
 from sim_backends.mujoco_backend import MujocoBackend
@@ -41,7 +45,9 @@ def build(request: RunRequest) -> Session:
         "plant.ball=true": bool(request.schedules.balls),
         "plant.hoist=true": request.hoisted and not request.live,
     }
-    overrides = (*request.overrides, *(change for change, wanted in more.items() if wanted))
+    jump = () if request.jump is None else jump_changes(request, request.jump)
+    added = (change for change, wanted in more.items() if wanted)
+    overrides = (*jump, *request.overrides, *added)
     request = request.model_copy(update={"overrides": overrides})
     session = build_robot(request, load_robot(request.robot, overrides))
     if on_the_ground(session):
@@ -67,7 +73,7 @@ def _on_mujoco(request: RunRequest, description: RobotDescription) -> Session:
         raise InputError("--realtime belongs to --backend bus: it paces a robot behind ports")
     rate_hz, seed = control_rate(request), request.seed
     velocity = (0.0, 0.0)
-    if description.start.moving:
+    if description.start.moving and request.jump is None:
         velocity = (_initial_speed(request, description), description.start.lateral_velocity)
     mapping, motors = None, None
     if description.actuation == "servo":
@@ -117,6 +123,8 @@ def on_virtual_robot(
         stack.callback(world.close)
         if request.faults:
             world.plan_faults(request.faults)
+        if request.schedules.water:
+            world.set_medium(0.0, WATER_DENSITY, 1.0)  # cut into elements before anything moves
         calibration = ideal_calibration(description, world.calibration_data)
         mapping = GainMapping(description, calibration)
         backend = BusBackend(
@@ -177,19 +185,23 @@ def _session(
     world: World | None,
     **more: Any,
 ) -> Session:
-    controller = _controller(request, description)
-    estimator = _estimator(request, description, world, controller.status)
+    controller = make_controller(request, description)
+    estimator = make_estimator(request, description, world, controller.status)
     hidden = hidden_values(description, request.seed).as_dict() if world is not None else {}
     meta = {"hidden": hidden}
+    if isinstance(controller, JumpController | ServoHop):
+        more["jump"] = jump_reporter(description, controller)
     if isinstance(backend, BusBackend) and not request.lockstep:
         more["watch"] = lambda: "guardian lost" if backend.guardian_lost() else None
     return Session(request, description, backend, estimator, controller, world, meta, **more)
 
 
-def _estimator(
+def make_estimator(
     request: RunRequest, description: RobotDescription, world: World | None, status: WalkStatus
 ) -> Estimator:
-    if request.estimator == "sensors" and (request.hoisted or request.activity != "walk"):
+    """What makes estimates in a resolved request's run; `status` is its controller's."""
+    hangs = request.hoisted or request.activity in ("stand", "sit")
+    if request.estimator == "sensors" and hangs:
         return HangingEstimator(description, control_rate(request), status)
     if request.estimator == "sensors":
         return SensorEstimator(description, control_rate(request))
@@ -198,12 +210,15 @@ def _estimator(
     return TruthEstimator(description, world.truth)
 
 
-def _controller(request: RunRequest, description: RobotDescription) -> Controller:
+def make_controller(request: RunRequest, description: RobotDescription) -> Controller:
+    """The controller of a resolved request."""
     rate_hz, ankle_limit = control_rate(request), bool(request.ankle_limit)
     if request.activity == "stand":
         return PoseHolder(description, description.start_position)
     if request.activity == "sit":
         return PoseHolder(description, sit_position(description))
+    if request.jump is not None:
+        return jump_controller(request.jump, description, rate_hz)
     if description.actuation == "servo":
         return ServoWalker(description, rate_hz, ankle_limit, hoisted=request.hoisted)
     return TorqueWalker(

@@ -18,6 +18,8 @@ BAD_INPUT = [
     (["minibiped", "--space", "dance"], "space"),
     (["minibiped", "--space", "gains", "--vary", "elbow.kp"], "elbow.kp"),
     (["minibiped", "--weight", "beauty=1"], "energy"),
+    (["human", "--weighting", "3-3-3"], "3-6-1"),
+    (["minibiped", "--space", "style"], "no key poses"),
     (["minibiped", "--weight", "energy=much"], "NAME=NUMBER"),
 ]
 
@@ -72,6 +74,25 @@ def test_a_search_cut_short_goes_on_and_finds_the_same(tmp_path):
     (tmp_path / "cases.jsonl").write_bytes(torn)
     assert search(2) == found
     assert len((tmp_path / "cases.jsonl").read_bytes().splitlines()) == len(lines)
+
+
+def test_a_quick_search_for_a_style_leaves_an_entry_of_styles(tmp_path):
+    out = tmp_path / "out"
+    result = study(
+        "human", "--space", "style", "--level", 0.5, "--speed", 0.3, "--quick", "--jobs", 1,
+        "--out", out,
+    )  # fmt: skip
+    assert result.exit_code == 0, result.stderr
+    assert "drag" in result.stdout and "swing_aside[0]" in result.stdout
+    [style] = yaml.safe_load((out / "best.yaml").read_text(encoding="utf-8"))
+    assert (style["speed"], style["water"]) == (0.3, 0.5)
+    assert {name: len(knots) for name, knots in style["poses"].items()} == {
+        "root_pitch": 3, "back_pitch": 2, "stance_foot": 11, "swing_foot": 11, "stance_knee": 5,
+        "swing_aside": 3, "swing_drop": 5, "swing_ahead": 11,
+    }  # fmt: skip
+    with (out / "style.csv").open(newline="") as file:
+        costs = [float(row["best_cost"]) for row in csv.DictReader(file)]
+    assert costs[1] <= costs[0] < 12.0
 
 
 def test_pushes_grow_and_go_around():
