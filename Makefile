@@ -8,7 +8,9 @@ PYTHON ?= $(shell for p in python3.13 python3.12 python3.11 python3 python; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; \
 	done)
 
-.PHONY: walk test lint check bench clean
+.PHONY: setup walk test lint docs check bench clean
+
+setup: $(VENV)/.walk
 
 walk: $(VENV)/.walk
 	$(BIN)/stride walk $(ROBOT) --duration 20
@@ -22,7 +24,10 @@ lint: $(VENV)/.dev
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-cache
 
-check: lint test
+docs: $(VENV)/.dev
+	$(BIN)/python docs/site/build.py
+
+check: lint docs test
 
 bench: $(VENV)/.walk
 	$(BIN)/stride bench

@@ -47,7 +47,7 @@ class RobotModel:
         root_joint = self.model.body_jntadr[self.root_body]
         if root_joint < 0 or self.model.jnt_type[root_joint] != mujoco.mjtJoint.mjJNT_FREE:
             raise DescriptionError(self._file, "root", f"{description.root!r} has no free joint")
-        self._base_qpos = int(self.model.jnt_qposadr[root_joint])
+        self.base_qpos = int(self.model.jnt_qposadr[root_joint])
         self.base_dof = int(self.model.jnt_dofadr[root_joint])
         self.joint_ids = self._joint_ids(description.joint_names, "joints")
         """MuJoCo joint of every described joint, shape (n,)."""
@@ -75,7 +75,7 @@ class RobotModel:
         """[kg]"""
         self.weight = self.mass * self.gravity
         """[N]"""
-        self._place_at_zero()
+        self.place_at_zero()
         hip, knee, ankle = (points[0].copy() for points in self.leg_points())
         self.thigh_length = float(np.linalg.norm(hip - knee))
         """Hip centre to knee axis [m]."""
@@ -90,7 +90,7 @@ class RobotModel:
 
     def _view_data(self) -> None:
         """Views of MuJoCo's arrays: they follow every state, and cost nothing in a tick."""
-        data, dof, qpos = self.data, self.base_dof, self._base_qpos
+        data, dof, qpos = self.data, self.base_dof, self.base_qpos
         self._base = (data.qpos[qpos : qpos + 3], data.qpos[qpos + 3 : qpos + 7])
         self._base_rates = (data.qvel[dof : dof + 3], data.qvel[dof + 3 : dof + 6])
         self._qpos, self._qvel, self._axes = data.qpos, data.qvel, data.xaxis
@@ -136,7 +136,8 @@ class RobotModel:
         mujoco.mj_comVel(model, data)
         mujoco.mj_subtreeVel(model, data)
 
-    def _place_at_zero(self) -> None:
+    def place_at_zero(self) -> None:
+        """Place the model where its file has it, every joint at 0."""
         self.data.qpos[:] = self.model.qpos0
         self._kinematics()
 

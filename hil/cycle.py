@@ -25,6 +25,7 @@ from hil.safety.severity import Event, Severity
 from hil.safety.way_out import WayDown
 from hil.schedule import Medium, Operator
 from hil.session import Session
+from hil.steering.helm import Helm
 from hil.timing import TickSchedule, TickTiming, stopwatch_ns
 
 NO_TICK = -(1 << 60)
@@ -72,7 +73,13 @@ class Sink(Protocol):
 class Cycle:
     """Runs the ticks of one session. `session.request` must be resolved."""
 
-    def __init__(self, session: Session, rate_hz: int, sinks: tuple[Sink, ...]) -> None:
+    def __init__(
+        self,
+        session: Session,
+        rate_hz: int,
+        sinks: tuple[Sink, ...],
+        helm: Helm | None = None,
+    ) -> None:
         description, n = session.description, len(session.description.joints)
         self.rate_hz = rate_hz
         weight_n = body_weight(description) if description.actuation == "servo" else 0.0
@@ -85,6 +92,7 @@ class Cycle:
         self.schedule = TickSchedule(session.backend.clock, rate_hz)
         self._session = session
         self._sinks = sinks
+        self._helm = helm
         self._operator = Operator(session.request.schedules, description.defaults.speed)
         goals = description.actuation == "servo"
         self._limits = JointLimits(description, rate_hz if goals else None)
@@ -115,6 +123,8 @@ class Cycle:
         timing.late_ns = self.schedule.late_ns
         time_s = tick / self.rate_hz
         started = stopwatch_ns()
+        if self._helm is not None and self._helm.act(self._operator, time_s):
+            self.supervisor.note(Event("operator", "hand off the controls", Severity.WARN))
         self._push(time_s)
         self._throw(time_s)
         self._immerse(time_s)
@@ -188,7 +198,7 @@ class Cycle:
 
     def _push(self, time_s: float) -> None:
         world = self._session.world
-        if world is None or not self._session.request.schedules.pushes:
+        if world is None or not self._operator.pushes:
             return
         force = self._operator.push(time_s)
         pushing = bool(np.any(force))

@@ -8,12 +8,12 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.patches import Polygon
 
+from hil.convex_hull import convex_hull
 from hil.description import RobotDescription
+from hil.figure_style import BODY, LEFT, RIGHT
 from hil.interface import Floats
 from hil.trace import Trace
 
-LEFT, RIGHT, BODY = "#d9722b", "#2a6f97", "#4a4e54"
-"""Colours of the left side, the right side and the rest, in every figure."""
 CIRCLE = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
 
 
@@ -47,15 +47,28 @@ class Outline:
 
     def draw(self, axes: Axes, trace: Trace, tick: int, offset: float) -> None:
         """Add the outline of one tick, its root body at the abscissa `offset` [m]."""
+        base, orientation = trace.base_position[tick], trace.base_orientation[tick]
+        yaw = float(trace.yaw[tick])
+        self.draw_posture(axes, base, orientation, trace.joint_position[tick], yaw, offset)
+
+    def draw_posture(
+        self,
+        axes: Axes,
+        base_position: Floats,
+        base_orientation: Floats,
+        joint_position: Floats,
+        yaw: float,
+        offset: float,
+    ) -> None:
+        """Add the outline of one posture, seen across the heading `yaw` [rad]."""
         data, free = self._data, self._free
-        data.qpos[free : free + 3] = trace.base_position[tick]
-        data.qpos[free + 3 : free + 7] = trace.base_orientation[tick]
-        data.qpos[self._angles] = trace.joint_position[tick]
+        data.qpos[free : free + 3] = base_position
+        data.qpos[free + 3 : free + 7] = base_orientation
+        data.qpos[self._angles] = joint_position
         mujoco.mj_kinematics(self._model, data)
-        yaw = trace.yaw[tick]
         # World axes to the picture's: along the heading, and up.
         view = np.array([[np.cos(yaw), np.sin(yaw), 0.0], [0.0, 0.0, 1.0]])
-        origin = view @ trace.base_position[tick] - [offset, trace.base_position[tick, 2]]
+        origin = view @ base_position - [offset, base_position[2]]
         for part in self._parts:
             world = part.points @ data.geom_xmat[part.geom].reshape(3, 3).T
             outline = convex_hull((world + data.geom_xpos[part.geom]) @ view.T - origin)
@@ -113,23 +126,3 @@ def surface_points(kind: int, size: Floats) -> Floats | None:
         ends = np.array([0.0, 0.0, size[1]])
         return np.vstack((ring * size[0] + ends, ring * size[0] - ends))
     return None
-
-
-def convex_hull(points: Floats) -> Floats:
-    """Convex hull of points in the plane, counter-clockwise (Andrew's monotone chain)."""
-    ordered = sorted(map(tuple, np.round(points, 9).tolist()))
-    lower, upper = _half_hull(ordered), _half_hull(ordered[::-1])
-    return np.array(lower[:-1] + upper[:-1])
-
-
-def _half_hull(points: list[tuple[float, ...]]) -> list[tuple[float, ...]]:
-    chain: list[tuple[float, ...]] = []
-    for point in points:
-        while len(chain) > 1 and _turn(chain[-2], chain[-1], point) <= 0:
-            chain.pop()
-        chain.append(point)
-    return chain
-
-
-def _turn(a: tuple[float, ...], b: tuple[float, ...], c: tuple[float, ...]) -> float:
-    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

@@ -294,6 +294,11 @@ class WalkStatus:
     """Heading that the controller tracks in this tick [rad]."""
     alteration: float = 0.0
     """Sagittal distance that speed errors have added to the steps, Δ [m]."""
+    recovering: bool = False
+    """The present step is a recovery step."""
+    wanted_speed: float = float("nan")
+    """Sagittal speed that is wanted at this phase of the step: the commanded one with the learnt
+    curve and its offset [m/s]; NaN of a controller that has no curve."""
 
 
 class Clock(Protocol):

@@ -1,6 +1,6 @@
 """Stiffness and damping of joints by control rate, as a robot file stores them."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
 from pydantic import NonNegativeFloat
 
@@ -16,6 +16,14 @@ def kind_of(joint: str) -> str:
         if joint.startswith(f"{side}_"):
             return joint.removeprefix(f"{side}_")
     return joint
+
+
+def kinds(joints: Sequence[str]) -> dict[str, list[int]]:
+    """Places of the joints of each kind, the sides together, in the order given."""
+    groups: dict[str, list[int]] = {}
+    for place, joint in enumerate(joints):
+        groups.setdefault(kind_of(joint), []).append(place)
+    return groups
 
 
 def set_for(rates: Collection[int], rate_hz: int) -> int:

@@ -10,12 +10,14 @@ from dataclasses import dataclass, field
 from hil.cycle import Cycle, Sink
 from hil.errors import StrideError
 from hil.interface import Estimate, JointCommand, Reference
+from hil.pacer import Pacer
 from hil.safety.decision import Action
 from hil.safety.severity import Event, Fault, Severity
 from hil.session import Session
 from hil.shutdown import stop_and_close
 from hil.signals import OperatorStop, StopSignals
 from hil.startup import stand_up
+from hil.steering.helm import Helm
 from hil.stop_listener import StopListener
 from hil.timing import quiet_garbage_collector, real_time_priority, stopwatch_ns
 
@@ -48,17 +50,20 @@ class Loop:
         *,
         sits: bool = True,
         listener: StopListener | None = None,
+        helm: Helm | None = None,
+        pacer: Pacer | None = None,
     ) -> None:
         """`sits`: sit down when the walk is over; a study may save the time. `listener`: where
-        the operator is heard beside signals.
+        the operator is heard beside signals. `helm`: what steers; a walk then waits for its word.
+        `pacer`: holds back virtual time.
         """
         self.outcome = Outcome()
         self._session, self._sits = session, sits
-        self._listener = listener
+        self._listener, self._helm, self._pacer = listener, helm, pacer
         self._at_rest = False
         self._signals = StopSignals()
         rate_hz = session.request.rate_hz or session.description.defaults.rate_hz
-        self._cycle = Cycle(session, rate_hz, sinks)
+        self._cycle = Cycle(session, rate_hz, sinks, helm)
 
     def run(self) -> Outcome:
         """Walk for the requested time; raises what any part raised, once the robot is safe."""
@@ -94,7 +99,10 @@ class Loop:
             self._session.backend.arm()
             self._cycle.begin(0)
             return Action.RUN
-        return stand_up(self._session, self._cycle, self._signals.check, self._listen)
+        helm = self._helm
+        waits = helm is not None and self._session.request.activity == "walk"
+        begun = (lambda: helm is None or helm.started) if waits else None
+        return stand_up(self._session, self._cycle, self._signals.check, self._listen, begun)
 
     def _walk(self) -> Action:
         cycle, clock = self._cycle, self._session.backend.clock
@@ -129,6 +137,9 @@ class Loop:
     def _listen(self) -> None:
         """Hand what the operator asks for, or another problem, to the supervisor."""
         supervisor, watch = self._cycle.supervisor, self._session.watch
+        if self._pacer is not None:
+            schedule = self._cycle.schedule
+            self._pacer.wait(schedule.time_ns(schedule.tick))
         while (request := self._signals.news()) is not None:
             severity = Severity.TORQUE_OFF if request.now else Severity.SOFT_STOP
             supervisor.note(Event("operator", request.name, severity))

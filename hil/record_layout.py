@@ -19,6 +19,7 @@ from hil.cycle import SafetyStatus, TickRecord
 from hil.interface import (
     AppliedCommand,
     Estimate,
+    Ints,
     JointCommand,
     Reference,
     SensorFrame,
@@ -140,6 +141,11 @@ class TickWriter:
             self._filled += size
         return _getter(chosen), self._buffer[begin : self._filled].view(columns[0].dtype)
 
+    def words(self, row: int) -> Ints:
+        """One row as it lies in memory, shape (words,)."""
+        words: Ints = self._rows[row]
+        return words
+
     def write(self, row: int, record: TickRecord) -> None:
         """Fill one row."""
         for values, area in self._arrays:
@@ -191,6 +197,7 @@ def blank_estimate(n: int) -> Estimate:
 
 
 def _blank_truth(n: int) -> Truth:
-    three, four = np.zeros(3), np.zeros(4)
-    joints, loads = (np.zeros(n), np.zeros(n)), (np.zeros((2, 4)), np.zeros(2))
-    return Truth(0, three, four, three, three, *joints, three, three, *loads)
+    """As `blank_estimate`: no two arrays the same."""
+    base = (np.zeros(3), np.zeros(4), np.zeros(3), np.zeros(3))
+    joints, com = (np.zeros(n), np.zeros(n)), (np.zeros(3), np.zeros(3))
+    return Truth(0, *base, *joints, *com, np.zeros((2, 4)), np.zeros(2))

@@ -3,15 +3,15 @@
 A process of its own (`hil.recorder_process`) packs it into `session.mcap`.
 """
 
-import json
 import os
 import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
+from hil.child_process import spawn
 from hil.cycle import TickRecord
 from hil.errors import BackendError
+from hil.interface import Ints
 from hil.record_layout import TickWriter, tick_dtype
 from hil.recorder_ring import Ring
 from hil.timing import pause
@@ -42,15 +42,21 @@ class Recorder:
             "duration_s": meta["request"]["duration_s"],
             "meta": meta,
         }
-        self._process = self._spawn(job)
+        self._row = 0
+        self._process = spawn("hil.recorder_process", job, [self._ring.descriptor])
 
     def put(self, record: TickRecord) -> None:
         """Copy a tick into the ring."""
         if self._ring.full and not self._has_room():
             self.dropped += 1
             return
-        self._writer.write(self._ring.next_row, record)
+        self._row = self._ring.next_row
+        self._writer.write(self._row, record)
         self._ring.publish()
+
+    def last_row(self) -> Ints:
+        """The tick that was put last, as words of `tick_dtype`: valid until the next one."""
+        return self._writer.words(self._row)
 
     def close(self) -> None:
         """Wait until everything is on disk. Raises BackendError if the writer failed."""
@@ -74,21 +80,3 @@ class Recorder:
         while self._lockstep and self._ring.full and self._process.poll() is None:
             pause(0.001)
         return not self._ring.full
-
-    def _spawn(self, job: dict[str, Any]) -> subprocess.Popen[bytes]:
-        """Start the writer, in a session of its own so that Ctrl-C does not reach it."""
-        home = str(Path(__file__).resolve().parent.parent)
-        paths = [home, *filter(None, [os.environ.get("PYTHONPATH")])]
-        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
-        process = subprocess.Popen(
-            [sys.executable, "-m", "hil.recorder_process"],
-            stdin=subprocess.PIPE,
-            pass_fds=[self._ring.descriptor],
-            env=environment,
-            start_new_session=True,
-        )
-        if process.stdin is None:
-            raise BackendError("the recorder has no input")
-        process.stdin.write(json.dumps(job).encode())
-        process.stdin.close()
-        return process

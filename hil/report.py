@@ -61,7 +61,7 @@ def make_report(
         **{key: _finite(statistics.get(key)) for key in FIGURE_KEYS},
         "faults": [asdict(fault) for fault in (*injected(request, duration_s), *outcome.faults)],
     }
-    return {key: _rounded(value) for key, value in figures.items()}
+    return rounded(figures)
 
 
 def injected(request: RunRequest, duration_s: float) -> list[Fault]:
@@ -71,6 +71,11 @@ def injected(request: RunRequest, duration_s: float) -> list[Fault]:
         for fault in request.faults
         if (fault.start or 0.0) <= duration_s
     ]
+
+
+def rounded(figures: dict[str, Any]) -> dict[str, Any]:
+    """Figures without the dust of their computation."""
+    return {key: _rounded(value) for key, value in figures.items()}
 
 
 def _rounded(value: Any) -> Any:

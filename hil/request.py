@@ -8,18 +8,23 @@ from pydantic import Field, PositiveFloat, PositiveInt, ValidationError, model_v
 from hil.description import RobotDescription
 from hil.errors import DescriptionError, InputError
 from hil.fault_spec import FaultSpec, check_faults
+from hil.jump_order import JumpOrder
 from hil.schedule import Schedules
 from hil.validation import Config
 
 BackendName = Literal["mujoco", "bus"]
 BusName = Literal["virtual", "real"]
 EstimatorName = Literal["sensors", "truth"]
-Activity = Literal["walk", "stand", "sit"]
-Feet = Literal["carry", "hang", "either"]
-"""Whether the feet carry a walking robot, must hang free, or may do either."""
+Activity = Literal["walk", "stand", "sit", "jump"]
+Feet = Literal["carry", "hang", "either", "leap"]
+"""Whether the feet carry a walking robot, must hang free, may do either, or leave the ground."""
+ViewName = Literal["web", "native"]
 PdName = Literal["explicit", "implicit"]
 StabilizerSolverName = Literal["cma", "linear", "scan"]
 DEFAULT_SOLVER: StabilizerSolverName = "linear"
+
+KEYS = "keys"
+"""What `--steer` names besides a gamepad's device file."""
 
 OPTIONS = {"rate_hz": "--rate", "duration_s": "--duration", "overrides": "--set"}
 """Command line options whose name is not that of their field."""
@@ -31,6 +36,8 @@ class RunRequest(Config):
     robot: str = "minibiped"
     """Name of a shipped robot or a YAML file."""
     activity: Activity = "walk"
+    jump: JumpOrder | None = None
+    """With the activity `jump`, and only there."""
     hoisted: bool = False
     """Walk in the air: the robot hangs, and its steps end by the clock."""
     backend: BackendName | None = None
@@ -62,6 +69,10 @@ class RunRequest(Config):
     """A second copy of report.json."""
     priority: int | None = Field(default=None, ge=1, le=98)
     """SCHED_FIFO priority of the loop."""
+    view: ViewName | None = None
+    """Show the run while it goes on."""
+    steer: str | None = None
+    """`keys`, or the device file of a gamepad, which brings the keys with it."""
 
     @classmethod
     def checked(cls, **values: Any) -> "RunRequest":
@@ -74,7 +85,7 @@ class RunRequest(Config):
             if not first["loc"]:
                 raise InputError(problem) from error
             names = [part for part in first["loc"] if isinstance(part, str)]
-            field = names[1] if names[0] == "schedules" and len(names) > 1 else names[0]
+            field = names[1] if names[0] in ("schedules", "jump") and len(names) > 1 else names[0]
             option = OPTIONS.get(field, "--" + field.replace("_", "-"))
             raise InputError(f"{option}: {problem} (got {first['input']!r})") from error
 
@@ -84,10 +95,20 @@ class RunRequest(Config):
         return not self.realtime and self.bus != "real"
 
     @property
+    def steered(self) -> bool:
+        """Whether somebody steers this walk: it then waits for the word to begin."""
+        return self.activity == "walk" and (self.view is not None or self.steer is not None)
+
+    @property
+    def paced(self) -> bool:
+        """Whether virtual time is held back to the wall's, since somebody watches or steers."""
+        return self.lockstep and (self.view is not None or self.steer is not None)
+
+    @property
     def feet(self) -> Feet:
         """What the feet of this run do."""
         if self.activity != "walk":
-            return "either"
+            return "leap" if self.activity == "jump" else "either"
         return "hang" if self.hoisted else "carry"
 
     @model_validator(mode="before")
@@ -118,11 +139,19 @@ class RunRequest(Config):
             raise ValueError("--water needs a simulated robot (docs/water.md)")
         if self.ports and not self.live:
             raise ValueError("--port and --ports are a real robot's: add --live to move its servos")
+        if (self.activity == "jump") != (self.jump is not None):
+            raise ValueError("a jump needs a target, and nothing else has one")
+        if self.activity == "jump" and (self.live or self.hoisted):
+            raise ValueError("--live: no jump on a real robot; it is for simulated ones")
         if self.hoisted:
             self._check_hoisted()
         if self.faults and (self.bus == "real" or self.backend == "mujoco"):
             other = "a real one" if self.bus == "real" else "--backend mujoco, which has no wires"
             raise ValueError(f"--fault is for a virtual robot behind wires, not for {other}")
+        if self.steer is not None and self.steer != KEYS and not self.steer.startswith("/"):
+            raise ValueError(
+                f"--steer: {self.steer!r} is neither {KEYS} nor a device such as /dev/input/js0"
+            )
         if self.priority is not None and self.lockstep:
             raise ValueError("--priority needs --realtime or --live: lockstep has no deadlines")
         return self
@@ -143,6 +172,8 @@ class RunRequest(Config):
         backend = self.backend or ("bus" if self.bus is not None else defaults.backend)
         if backend == "bus" and not description.buses:
             raise InputError(f"{description.name} has no servo bus: use --backend mujoco")
+        if backend == "bus":
+            description.require_servos()
         if self.faults and backend == "mujoco":
             raise InputError(f"--fault needs --backend bus; {description.name} runs on mujoco here")
         check_faults(self.faults, description)
@@ -172,7 +203,8 @@ class RunRequest(Config):
 
     def _check_rung(self, description: RobotDescription) -> None:
         what = "--hoisted" if self.hoisted else self.activity
-        if (self.hoisted or self.activity != "walk") and description.actuation == "torque":
+        rung = self.hoisted or self.activity in ("stand", "sit")
+        if rung and description.actuation == "torque":
             raise InputError(f"{what} is for robots with servos; {description.name} takes torques")
         if self.activity == "sit" and description.sit is None:
             raise DescriptionError(description.file, "sit", "is missing: no pose to sit in")

@@ -1,6 +1,7 @@
 """One run from a session to its folder: recording, report and picture."""
 
 import sys
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,12 +12,13 @@ from hil.errors import StrideError
 from hil.figures import draw_run
 from hil.loop import Loop, Outcome
 from hil.recorder import Recorder
-from hil.report import make_report
+from hil.report import make_report, rounded
 from hil.run_folder import make_meta, make_run_folder, write_json
 from hil.safety.severity import Fault
 from hil.session import Session
 from hil.stop_listener import StopListener
 from hil.trace import Trace, TraceSink
+from hil.view.attendance import Attendance, attend
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,17 +36,28 @@ def run(session: Session, *, progress: bool = True) -> RunResult:
     loop raises is raised again, after the robot is safe and the folder is complete. The session is
     closed whatever happens.
     """
+    attendance = Attendance()
     try:
+        attendance = attend(session)
         session.backend.open()
         if session.request.live:  # a virtual robot is new in every run: there it is no news
             sys.stderr.writelines(f"stride: {change}\n" for change in session.backend.changes)
         books = Books(session, progress=progress)
-        loop = Loop(session, books.sinks, listener=StopListener(books.folder))
+        loop = Loop(
+            session,
+            books.sinks + attendance.sinks(books.last_row),
+            listener=StopListener(books.folder, attendance.steering),
+            helm=attendance.helm,
+            pacer=attendance.pacer,
+        )
+        attendance.follow(loop, session)
     except BaseException:
+        attendance.close()
         session.close()
         raise
     try:
-        loop.run()
+        with closing(attendance):
+            loop.run()
     except BaseException as error:
         error.add_note(f"recorded in {books.folder}")
         books.close(loop.outcome)
@@ -60,7 +73,7 @@ def session_report(
     session: Session, outcome: Outcome, trace: Trace, weight_n: float
 ) -> dict[str, Any]:
     """The report of a session that is closed, or has nothing more to say."""
-    return make_report(
+    report = make_report(
         session.request,
         session.description.name,
         outcome,
@@ -69,6 +82,9 @@ def session_report(
         _statistics(session),
         truth=session.world is not None,
     )
+    if session.jump is not None:
+        report |= rounded(session.jump(trace, outcome.fell))
+    return report
 
 
 def _statistics(session: Session) -> dict[str, float | None]:
@@ -92,6 +108,7 @@ class Books:
         truth = session.world is not None
         self._recorder = Recorder(self.folder, self._meta, truth=truth, progress=progress)
         self.sinks: tuple[Sink, ...] = (self._trace, self._recorder)
+        self.last_row = self._recorder.last_row
 
     def close(self, outcome: Outcome) -> dict[str, Any]:
         """Finish the recording, write report and picture; the report."""

@@ -51,9 +51,9 @@ def make_meta(session: Session) -> dict[str, Any]:
         "started": datetime.now(UTC).isoformat(timespec="seconds"),
         "request": request.model_dump(mode="json"),
         "description": description.file,
-        "description_sha256": _sha256(Path(description.file)),
+        "description_sha256": sha256(description.file),
         "model": str(description.model_path),
-        "model_sha256": _sha256(description.model_path),
+        "model_sha256": sha256(description.model_path),
         "git_commit": git_commit(),
         "versions": {
             "stridebridge": __version__,
@@ -123,5 +123,6 @@ def _git(home: Path, *arguments: str) -> str:
     return result.stdout.strip()
 
 
-def _sha256(path: Path) -> str:
-    return hashlib.sha256(path.read_bytes()).hexdigest()
+def sha256(path: Path | str) -> str:
+    """Of a file's content, as meta.json holds it."""
+    return hashlib.sha256(Path(path).read_bytes()).hexdigest()

@@ -25,6 +25,9 @@ Medium = tuple[float, float, float]
 ROUNDING_S = 1e-9
 """A tick at the end of a push is after it, however the sum of two times was rounded."""
 
+TURN_RATE = math.radians(30.0)
+"""How fast a steered heading moves [rad/s]; a controller spreads it over its steps."""
+
 NUMBER = r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)"
 
 
@@ -78,7 +81,8 @@ class Operator:
         self._speed = _anchored(schedules.speed, default_speed)
         self._lateral = _anchored(schedules.lateral, 0.0)
         self._turns = sorted(schedules.turns)
-        self._pushes = schedules.pushes
+        self._bearing: list[Point] = []
+        self._pushes = list(schedules.pushes)
         self._balls = sorted(schedules.balls, key=lambda ball: ball.start)
         dry = Reference()
         self._liquid = tuple(
@@ -100,10 +104,36 @@ class Operator:
         reference.speed = _interpolate(self._speed, time_s)
         reference.lateral = _interpolate(self._lateral, time_s)
         reference.heading = sum(angle for start, angle in self._turns if start <= time_s)
+        if self._bearing:
+            reference.heading = _interpolate(self._bearing, time_s)
         if self._wet:
             medium = self.medium(time_s)
             reference.water_level, reference.liquid_density, reference.liquid_viscosity = medium
         return reference
+
+    def steer(self, axis: str, value: float, time_s: float) -> None:
+        """Ask for a `speed` or `lateral` speed [m/s] or a `heading` [rad] from a time on.
+
+        What was scheduled for that axis is given up. A heading is reached at `TURN_RATE`; how fast
+        a speed may change is the controller's concern.
+        """
+        if axis == "heading":
+            present = self.reference(time_s).heading
+            way_s = abs(value - present) / TURN_RATE
+            self._bearing = [(time_s, present), (time_s + way_s + ROUNDING_S, value)]
+        elif axis == "speed":
+            self._speed = [(time_s, value)]
+        else:
+            self._lateral = [(time_s, value)]
+
+    @property
+    def pushes(self) -> bool:
+        """Whether there is, or was, any push."""
+        return bool(self._pushes)
+
+    def push_now(self, push: Push) -> None:
+        """Add a push."""
+        self._pushes.append(push)
 
     def medium(self, time_s: float) -> Medium:
         """The liquid at a time."""

@@ -3,11 +3,14 @@
 from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from hil.description import RobotDescription
 from hil.interface import Backend, Controller, Estimator, World
 from hil.request import RunRequest
+
+if TYPE_CHECKING:
+    from hil.trace import Trace
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +34,8 @@ class Session:
     begin_faults: Callable[[int], None] | None = None
     """Tells a virtual robot when T = 0 is [ns on the backend's clock], where its faults wait for
     it."""
+    jump: "Callable[[Trace, bool], dict[str, Any]] | None" = None
+    """Of a jump: its report keys, from its trace and whether it fell."""
     watch: Callable[[], str | None] | None = None
     """Asked after every tick with torque on: what else is wrong, or nothing."""
     closers: tuple[Callable[[], None], ...] = ()

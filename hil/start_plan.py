@@ -52,7 +52,7 @@ def start_plan(request: RunRequest, description: RobotDescription) -> StartPlan:
     pose = description.start_position
     if request.activity == "sit":
         return StartPlan(sit_position(description), HOLD_S, SIT_RAMP_S, 0.0, SETTLE_S, False)
-    if request.activity == "walk" and not request.live:
+    if request.activity in ("walk", "jump") and not request.live:
         return StartPlan(pose, 0.0, RAMP_S, 0.0, SETTLE_S, True)
     boards = [foot.board for foot in description.feet.values()]
     waits = request.activity == "walk" and not request.hoisted and None not in boards

@@ -1,6 +1,7 @@
 """From switched off to standing: hear every sensor, arm, hold, ramp, be lowered, settle."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -24,6 +25,8 @@ CARRYING_SHARE = 0.7
 """Feet that carry more of the weight than this stand."""
 CARRYING_S = 1.0
 """For so long they must, before the robot counts as standing."""
+LONGEST_STAND_S = 600.0
+"""A walk that waits for a word waits no longer: servos that hold get warm."""
 
 
 def await_sensors(session: Session, cycle: Cycle, after_tick: Callable[[], None]) -> Floats:
@@ -51,13 +54,17 @@ def await_sensors(session: Session, cycle: Cycle, after_tick: Callable[[], None]
 
 
 def stand_up(
-    session: Session, cycle: Cycle, check: Callable[[], None], listen: Callable[[], None]
+    session: Session,
+    cycle: Cycle,
+    check: Callable[[], None],
+    listen: Callable[[], None],
+    begun: Callable[[], bool] | None = None,
 ) -> Action:
     """Ticks before T = 0, in the stages of `start_plan`.
 
     `check` is called after every tick before arming, and may raise to break off; `listen` after
-    every tick with torque on. Returns RUN, or how the supervisor ended it. Raises
-    BackendError for a robot that may not be armed.
+    every tick with torque on. The robot stands until `begun`, where that is given. Returns RUN, or
+    how the supervisor ended it. Raises BackendError for a robot that may not be armed.
     """
     plan = start_plan(session.request, session.description)
     present = await_sensors(session, cycle, check)
@@ -74,6 +81,10 @@ def stand_up(
     _support(session, False)
     if action is Action.RUN and wait:
         action = _await_weight(cycle, scale, settle, listen)
+    if action is Action.RUN and begun is not None:
+        cycle.begin(-round(LONGEST_STAND_S * cycle.rate_hz) - settle)
+        stage = Stage(pose.command, begun, Event("operator", "never began", Severity.SOFT_STOP))
+        action = _await(cycle, stage, settle, listen)
     if action is Action.RUN:
         action = _tick_until(cycle, 0, pose.command, listen)
     return action
@@ -101,10 +112,26 @@ def _tick_until(
 
 def _await_weight(cycle: Cycle, scale: "_Scale", settle: int, listen: Callable[[], None]) -> Action:
     """Hold the pose until the feet carry the robot; if they never do, sit down."""
-    action = _tick_until(cycle, -settle, scale.command, listen, lambda: scale.carried)
-    if action is Action.RUN and not scale.carried:
-        cycle.supervisor.note(Event("feet", "never carried the weight", Severity.SOFT_STOP))
-        return cycle.tick(scale.command)
+    trouble = Event("feet", "never carried the weight", Severity.SOFT_STOP)
+    return _await(cycle, Stage(scale.command, lambda: scale.carried, trouble), settle, listen)
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """A part of the start that lasts until something happens."""
+
+    source: CommandSource
+    done: Callable[[], bool]
+    trouble: Event
+    """What it means if it never does."""
+
+
+def _await(cycle: Cycle, stage: Stage, settle: int, listen: Callable[[], None]) -> Action:
+    """Ticks until a stage is done; RUN with `settle` ticks left, or how the supervisor ended it."""
+    action = _tick_until(cycle, -settle, stage.source, listen, stage.done)
+    if action is Action.RUN and not stage.done():
+        cycle.supervisor.note(stage.trouble)
+        return cycle.tick(stage.source)
     cycle.begin(-settle)
     return action
 

@@ -1,4 +1,7 @@
-"""The operator's other ways to stop a run: keys of its terminal, and a socket in its folder."""
+"""The operator's other ways to reach a run: keys of its terminal, and a socket in its folder.
+
+They stop any run. A run that is steered takes the words of `hil.steering` from them too.
+"""
 
 import os
 import select
@@ -13,6 +16,12 @@ from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Protocol
 
+from hil.errors import InputError
+from hil.steering.keys import HINT as STEERING_HINT
+from hil.steering.keys import STEERING_KEYS, KeyReader
+from hil.steering.steering import Steering
+from hil.steering.words import Word, parse_word
+
 SOCKET = "stop"
 """Name of the socket in the run folder."""
 HINT = "space: torque off now; q or Ctrl-C: sit down\n"
@@ -23,8 +32,13 @@ ANSWER_TIMEOUT_S = 0.5
 CLIENT_TIMEOUT_S = 0.05
 """A client that says nothing must not keep a key from being heard."""
 
+LINE = 128
+"""Longest line of a client or of the view [bytes]."""
+
 Source = Callable[[], bool]
 """Serves what is readable; False when there will be nothing more."""
+Say = Callable[[Word], None] | None
+"""Takes a steering word; none where nobody steers."""
 
 
 class Post(Protocol):
@@ -39,12 +53,13 @@ class StopListener:
     """A thread that sleeps until a key is pressed or a client connects: the tick pays nothing.
 
     Keys count while standard input is a terminal that this process has in the foreground. The
-    socket belongs to its user (0600) and knows two words: `off` and `sit`; it answers `ok`.
+    socket belongs to its user (0600) and knows two words: `off` and `sit`; it answers `ok`. With
+    steering, keys and socket know those words too, and a gamepad and the live view are heard.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, steering: Steering | None = None) -> None:
         """`folder` exists; the socket is there while `listening` lasts."""
-        self._folder = folder
+        self._folder, self._steering = folder, steering
 
     @contextmanager
     def listening(self, post: Post) -> Iterator[None]:
@@ -53,12 +68,18 @@ class StopListener:
             ending, end = socket.socketpair()
             stack.enter_context(ending)
             sources: dict[int, Source] = {}
+            steering = self._steering
+            helm = None if steering is None else steering.helm
+            say = None if helm is None else helm.post
             if _has_terminal():
                 stack.enter_context(_single_keys())
-                sources[sys.stdin.fileno()] = lambda: _take_keys(post)
-                sys.stderr.write(HINT)
+                reader = KeyReader()
+                sources[sys.stdin.fileno()] = lambda: _take_keys(reader, post, say)
+                sys.stderr.write(HINT + ("" if say is None else STEERING_HINT))
             listener = stack.enter_context(_bound(self._folder))
-            sources[listener.fileno()] = lambda: _take_client(listener, post)
+            sources[listener.fileno()] = lambda: _take_client(listener, post, say)
+            if steering is not None:
+                sources.update(stack.enter_context(_steered(steering, post, say)))
             thread = threading.Thread(target=_listen, args=(ending, sources), daemon=True)
             thread.start()
             stack.callback(thread.join)
@@ -85,27 +106,67 @@ def _listen(ending: socket.socket, sources: dict[int, Source]) -> None:
                 del sources[number]
 
 
-def _take_keys(post: Post) -> bool:
+def _take_keys(reader: KeyReader, post: Post, say: Say) -> bool:
     try:
         keys = os.read(sys.stdin.fileno(), 16)
     except OSError:
         keys = b""  # The terminal is gone, which SIGHUP tells too.
-    for key in (bytes([number]) for number in keys):
+    for key in reader.keys(keys):
         if key in KEYS:
             post("key space" if key == b" " else f"key {key.decode()}", now=KEYS[key])
+        elif say is not None and key in STEERING_KEYS:
+            say(STEERING_KEYS[key])
     return bool(keys)
 
 
-def _take_client(listener: socket.socket, post: Post) -> bool:
+@contextmanager
+def _steered(steering: Steering, post: Post, say: Say) -> Iterator[dict[int, Source]]:
+    """The live view's messages as a source, and the gamepad's thread, for the block."""
+    view, gamepad = steering.view, steering.gamepad
+    with ExitStack() as stack:
+        if gamepad is not None and say is not None:
+            stack.enter_context(
+                gamepad.listening(say, lambda word: post("gamepad", now=WORDS[word.encode()]))
+            )
+        yield {} if view is None else {view.fileno(): lambda: _take_view(view, post, say)}
+
+
+def _take_view(view: socket.socket, post: Post, say: Say) -> bool:
+    """One message of the view; its end means that the view has died, which is no harm."""
+    try:
+        line = view.recv(LINE)
+    except OSError:
+        return False
+    if line in WORDS:
+        post("view", now=WORDS[line])
+    elif line and say is not None:
+        with suppress(InputError):  # ours on both ends: only a torn message gets here
+            say(parse_word(line.decode(errors="replace")))
+    return bool(line)
+
+
+def _take_client(listener: socket.socket, post: Post, say: Say) -> bool:
     with suppress(OSError):  # a client that is gone again wants nothing
         client, _ = listener.accept()
         with client:
             client.settimeout(CLIENT_TIMEOUT_S)
-            word = client.recv(16).strip()
-            if word in WORDS:
-                post("socket", now=WORDS[word])
-            client.sendall(b"ok\n" if word in WORDS else b"say off or sit\n")
+            word = client.recv(LINE).strip()
+            client.sendall(_answer(word, post, say) + b"\n")
     return True
+
+
+def _answer(word: bytes, post: Post, say: Say) -> bytes:
+    """Do what a client of the socket says, and the answer to it."""
+    if word in WORDS:
+        post("socket", now=WORDS[word])
+    elif say is None:
+        return b"say off or sit"
+    else:
+        try:
+            say(parse_word(word.decode(errors="replace")))
+        except InputError as error:
+            return f"{error}; off and sit stop".encode()
+    return b"ok"
 
 
 def _has_terminal() -> bool:

@@ -29,7 +29,7 @@ STATUS = (
     "stabilizer_limited",
     "heading",
 )
-REFERENCE = ("speed", "lateral")
+REFERENCE = ("speed", "lateral", "water_level")
 TIMING = ("control_ns", "cycle_ns")
 
 
@@ -66,6 +66,8 @@ class Trace:
     """Commanded sagittal speed [m/s], (T,)."""
     lateral: Floats
     """Commanded coronal speed [m/s], (T,)."""
+    water_level: Floats
+    """Level of the liquid above the floor [m], (T,)."""
     control_ns: Ints
     """Wall time of the controller's step, (T,)."""
     cycle_ns: Ints

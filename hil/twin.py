@@ -96,6 +96,11 @@ class Plant(Config):
     """Have a ball that can be thrown at the robot."""
     hoist: bool = False
     """Hang the robot up by its root body, its feet off the floor: nothing lets it down."""
+    gravity: PositiveFloat | None = None
+    """[m/s²]; none: the model's own."""
+    platform: tuple[float, float, float, float, float] | None = None
+    """A box on the floor: from x, to x, from y, to y, height [m]; a robot that starts over it
+    stands on it."""
     viscous_friction: float = Field(default=0.0, ge=0)
     """Of every servo's gear train [N·m·s/rad]."""
     stribeck_friction: float = Field(default=0.0, ge=0)

@@ -111,3 +111,14 @@ def lowest_sole_point(
         bottom = data.geom_xpos[geom][2] + up @ centre - np.abs(up) @ half
         lowest = min(lowest, float(bottom))
     return lowest
+
+
+def rise_to_ground(
+    model: mujoco.MjModel, data: mujoco.MjData, description: RobotDescription
+) -> float:
+    """How far a robot at the origin must rise to stand on what is under it [m]."""
+    height = -lowest_sole_point(model, data, description)
+    if description.plant.platform is not None:
+        x0, x1, y0, y1, top = description.plant.platform
+        height += top if x0 <= 0.0 <= x1 and y0 <= 0.0 <= y1 else 0.0
+    return height

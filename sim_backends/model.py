@@ -11,6 +11,7 @@ from hil.servo import MotorParameters
 from sim_backends.ball import add_ball
 from sim_backends.draws import HiddenValues
 from sim_backends.gear_train import ROTOR, add_rotor
+from sim_backends.platform import add_platform
 from sim_backends.uneven_floor import add_feelers
 
 SUPPORT = "support"
@@ -50,6 +51,8 @@ def build_model(
     _add_support(spec, description.root)
     if description.plant.ball:
         add_ball(spec)
+    if description.plant.platform is not None:
+        add_platform(spec, description.plant.platform)
     if description.imu is not None:
         spec.add_sensor(
             name=ACCELEROMETER,
@@ -182,6 +185,8 @@ def _configure(
     option.timestep = 1.0 / (rate_hz * substeps(description, rate_hz))
     # MuJoCo 4.0.0 solves sparse Jacobians wrongly (mujoco issue 3767); robots here are small.
     option.jacobian = mujoco.mjtJacobian.mjJAC_DENSE
+    if description.plant.gravity is not None:
+        option.gravity[:] = (0.0, 0.0, -description.plant.gravity)
     for bit in _DISABLED:
         option.disableflags |= int(bit)
     _set_contacts(model, description)

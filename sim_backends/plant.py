@@ -10,7 +10,7 @@ from hil.errors import BackendError, InputError
 from hil.interface import Floats, Truth
 from hil.servo import MotorParameters
 from sim_backends.draws import hidden_values
-from sim_backends.foot_loads import FootLoads, lowest_sole_point
+from sim_backends.foot_loads import FootLoads, rise_to_ground
 from sim_backends.model import (
     ACCELEROMETER,
     build_model,
@@ -160,7 +160,7 @@ class Plant:
         if self._floor is not None:
             self._position[2] -= self._floor.place()
         else:
-            self._position[2] -= lowest_sole_point(self.model, self.data, self.description)
+            self._position[2] += rise_to_ground(self.model, self.data, self.description)
         self._linear[:2] = velocity
         self.set_support(not self.description.start.moving)
         mujoco.mj_forward(self.model, self.data)

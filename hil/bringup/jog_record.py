@@ -15,8 +15,7 @@ from matplotlib.figure import Figure
 from hil import __version__
 from hil.bringup.facts import JogSample
 from hil.bringup.jog import JogRecord, JogRequest, Servo, StepFigures
-from hil.figure_robot import BODY, LEFT, RIGHT
-from hil.figures import STYLE
+from hil.figure_style import BODY, LEFT, LIMIT, RIGHT, STYLE, WARNING
 from hil.run_folder import git_commit, write_json
 
 
@@ -91,7 +90,7 @@ def _draw_position(axes: Axes, record: JogRecord) -> None:
     """The servo's plan is of the slow part only: without a profile there is none."""
     end = len(record.samples)
     slow = end if record.sharp_from is None else record.sharp_from
-    rows = (("goal", "goal_deg", "#c1272d", "--", end),
+    rows = (("goal", "goal_deg", WARNING, "--", end),
             ("servo's own plan", "planned_deg", RIGHT, "-", slow),
             ("position", "position_deg", LEFT, "-", end))  # fmt: skip
     for label, name, colour, line, count in rows:
@@ -113,7 +112,7 @@ def _draw_effort(axes: Axes, samples: list[JogSample], effort: float) -> None:
         current = [100.0 * (sample.current_a or 0.0) for sample in samples]
         axes.plot(time, current, color="#e9b872", label="current [0.01 A]")
     for limit in (-100 * effort, 100 * effort):
-        axes.axhline(limit, color="#6b7078", linestyle=":", linewidth=1.0)
+        axes.axhline(limit, color=LIMIT, linestyle=":", linewidth=1.0)
     axes.set(title="What it took (dotted: limit of the duty)", xlabel="time [s]")
     axes.legend(loc="upper right", ncols=2)
     axes.margins(x=0)

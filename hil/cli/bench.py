@@ -52,7 +52,8 @@ def bench(
     from rich.console import Console
 
     from hil.bench import CASES, measure, measure_driver
-    from hil.cli.table import number, print_rows
+    from hil.cli.table import print_rows
+    from hil.report_words import number
 
     rows = []
     console = Console(stderr=True)
@@ -175,7 +176,7 @@ def _print_beside(title: str, rows: Sequence[Mapping[str, Any]]) -> None:
 
 
 def _text(value: object) -> str:
-    from hil.cli.table import number
+    from hil.report_words import number
 
     return number(value) if isinstance(value, float) else str(value)
 

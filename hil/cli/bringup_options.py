@@ -5,7 +5,9 @@ from typing import Annotated
 
 from typer import Argument, Option
 
-Robot = Annotated[str, Argument(help="A robot that ships, or a YAML file.")]
+from hil.cli.completion import robots
+
+Robot = Annotated[str, Argument(help="A robot that ships, or a YAML file.", autocompletion=robots)]
 Ports = Annotated[
     list[str] | None,
     Option(

@@ -93,7 +93,8 @@ def _move(
 def _print(report: dict[str, Any]) -> None:
     from rich.markup import escape
 
-    from hil.cli.table import number, print_rows
+    from hil.cli.table import print_rows
+    from hil.report_words import number
 
     rows = [
         (

@@ -12,14 +12,18 @@ from hil.cli import (
     calibrate,
     check,
     compare,
+    doctor,
     emulate,
     export,
     gains,
     identify,
     jog,
+    jump,
     monitor,
+    new_robot,
     plot,
     relax,
+    replay,
     scan,
     setup,
     sit,
@@ -27,6 +31,7 @@ from hil.cli import (
     stop,
     study,
     twin,
+    video,
     walk,
 )
 from hil.errors import StrideError
@@ -62,6 +67,7 @@ app = typer.Typer(
     epilog="Start with: [bold]stride walk[/bold]. It needs no hardware.",
 )
 app.command(epilog=walk.EPILOG)(walk.walk)
+app.command(epilog=jump.EPILOG)(jump.jump)
 app.command(epilog=stand.EPILOG)(stand.stand)
 app.command(epilog=sit.EPILOG)(sit.sit)
 app.command(epilog=stop.EPILOG)(stop.stop)
@@ -73,12 +79,16 @@ app.command(epilog=check.EPILOG)(check.check)
 app.add_typer(calibrate.app)
 app.command(epilog=monitor.EPILOG)(monitor.monitor)
 app.command(epilog=relax.EPILOG)(relax.relax)
+app.command(epilog=replay.EPILOG)(replay.replay)
 app.command(epilog=twin.EPILOG)(twin.twin)
 app.command(epilog=compare.EPILOG)(compare.compare)
 app.command(epilog=plot.EPILOG)(plot.plot)
 app.command(epilog=export.EPILOG)(export.export)
+app.command(epilog=video.EPILOG)(video.video)
 app.command(epilog=identify.EPILOG)(identify.identify)
 app.add_typer(bench.app)
+app.command(epilog=doctor.EPILOG)(doctor.doctor)
+app.command(epilog=new_robot.EPILOG)(new_robot.new_robot)
 app.command(epilog=gains.EPILOG)(gains.gains)
 app.add_typer(study.app)
 

@@ -5,9 +5,10 @@ from typing import Annotated
 
 from typer import Argument, Option
 
-from hil.request import BackendName, BusName, EstimatorName, PdName, StabilizerSolverName
+from hil.cli.completion import robots
+from hil.request import BackendName, BusName, EstimatorName, PdName, StabilizerSolverName, ViewName
 
-Robot = Annotated[str, Argument(help="A robot that ships, or a YAML file.")]
+Robot = Annotated[str, Argument(help="A robot that ships, or a YAML file.", autocompletion=robots)]
 Backend = Annotated[
     BackendName | None,
     Option(help="What stands behind the interface; the robot's own choice if not given."),
@@ -90,6 +91,18 @@ AnkleLimit = Annotated[
 Overrides = Annotated[
     list[str] | None,
     Option("--set", metavar="KEY=VALUE", help="Change a value of the robot file; repeatable."),
+]
+View = Annotated[
+    ViewName | None,
+    Option(help="Show the run while it goes on, in a browser or a window (docs/view.md)."),
+]
+Steer = Annotated[
+    str | None,
+    Option(metavar="keys|DEVICE", help="Steer with the keys, or also a gamepad /dev/input/js0."),
+]
+WalkTime = Annotated[
+    float | None,
+    Option("--duration", help="Walking time in s.", show_default="20, or 600 if it is steered"),
 ]
 Out = Annotated[
     Path | None, Option(help="The run folder itself.", show_default="runs/<time>-<robot>")

@@ -8,42 +8,9 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from hil.report_words import GROUND_FIGURES, MAIN_FIGURES, number
+
 PAGE_COLUMNS = 160
-
-MAIN_FIGURES = (
-    ("fell", "fell", ""),
-    ("duration", "duration_s", "s"),
-    ("steps", "steps", ""),
-    ("distance", "distance_m", "m"),
-    ("mean speed", "mean_speed_mps", "m/s"),
-    ("commanded speed", "target_speed_mps", "m/s"),
-    ("speed error", "speed_error_pct", "%"),
-    ("heading error", "heading_error_deg", "deg"),
-    ("disequilibrium", "disequilibrium_pct", "%"),
-    ("controller, mean", "controller_ms_mean", "ms"),
-    ("controller, p99", "controller_ms_p99", "ms"),
-    ("tick, p50", "cycle_ms_p50", "ms"),
-    ("tick, p99", "cycle_ms_p99", "ms"),
-    ("deadlines missed", "deadline_misses", ""),
-    ("real-time factor", "real_time_factor", "×"),
-    ("bus utilisation", "bus_utilisation_pct", "%"),
-    ("bus CRC errors", "bus_crc_errors", ""),
-    ("bus timeouts", "bus_timeouts", ""),
-    ("hottest servo", "temperature_max_c", "°C"),
-    ("torque rms, worst servo", "torque_rms_ratio_max", "of stall"),
-    ("duty saturated, worst servo", "duty_saturation_pct_max", "%"),
-    ("lowest supply", "voltage_min_v", "V"),
-    ("energy", "energy_wh", "Wh"),
-)
-
-
-def number(value: Any) -> str:
-    """A figure as a person reads it."""
-    if value is None:
-        return "–"
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    return f"{value:.3f}" if isinstance(value, float) else str(value)
 
 
 def print_rows(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
@@ -54,17 +21,6 @@ def print_rows(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]]) 
     for row in rows:
         table.add_row(*row)
     _console().print(table)
-
-
-GROUND_FIGURES = (
-    "distance_m",
-    "mean_speed_mps",
-    "target_speed_mps",
-    "speed_error_pct",
-    "heading_error_deg",
-    "disequilibrium_pct",
-)
-"""What says nothing of a robot that does not walk on the ground."""
 
 
 def print_report(report: dict[str, Any], rung: str = "") -> None:
@@ -79,7 +35,7 @@ def print_report(report: dict[str, Any], rung: str = "") -> None:
     rows = [
         (name, number(report[key]), unit)
         for name, key, unit in MAIN_FIGURES
-        if report[key] is not None and key not in hidden
+        if report.get(key) is not None and key not in hidden
     ]
     print_rows(title, ("", f"motion from {report['motion_source']}", ""), rows)
     for fault in report["faults"]:

@@ -25,10 +25,18 @@ stride walk --hoisted                             in the air: the rung before th
 
 stride walk my_robot.yaml --live --hoisted        a real robot, hung up; docs/bring-up.md
 
+stride walk --view web                            watched and steered in a browser
+
+stride walk --steer keys                          steered with the arrow keys
+
 stride walk human --rate 300 --duration 60        the seeds' character, on MuJoCo
 
 stride walk human --water 0 --water 0.5@10        water that rises to the knees in 10 s
 """
+
+
+WALK_S, STEERED_S = 20.0, 600.0
+"""Walking time where none is asked for; somebody who steers ends the walk himself."""
 
 
 def walk(
@@ -41,7 +49,7 @@ def walk(
     ports: PortsFile = None,
     yes: Yes = False,
     rate: options.Rate = None,
-    duration: options.Duration = 20.0,
+    duration: options.WalkTime = None,
     seed: options.Seed = 0,
     realtime: options.Realtime = False,
     priority: options.Priority = None,
@@ -61,6 +69,8 @@ def walk(
     stabilizer: options.Stabilizer = None,
     stabilizer_solver: options.StabilizerSolver = None,
     ankle_limit: options.AnkleLimit = None,
+    view: options.View = None,
+    steer: options.Steer = None,
     overrides: options.Overrides = None,
     out: options.Out = None,
     report: options.Report = None,
@@ -74,13 +84,16 @@ def walk(
     """
     changes = tuple(overrides or ())
     body = {"robot": robot, "backend": backend, "bus": bus, "live": live, "hoisted": hoisted}
-    clock = {"rate_hz": rate, "duration_s": duration, "realtime": realtime, "priority": priority}
+    steered = {"view": view, "steer": steer}
+    silent = STEERED_S if view or steer else WALK_S
+    time_s = silent if duration is None else duration
+    clock = {"rate_hz": rate, "duration_s": time_s, "realtime": realtime, "priority": priority}
     law = {"estimator": estimator, "pd": pd, "ankle_limit": ankle_limit, "seed": seed}
     steady = {"stabilizer": stabilizer, "stabilizer_solver": stabilizer_solver}
     files = {"overrides": changes, "out": out, "report": report}
     course = _schedules(speed, lateral, turn, push, ball) | _liquid(water, density, viscosity)
     request = RunRequest.checked(
-        **(body | clock | law | steady | files),
+        **(body | clock | law | steady | steered | files),
         ports=live_ports(robot, changes, port, ports),
         schedules=course | {"step_width": step_width},
         faults=gather_faults(fault or (), fault_plan),

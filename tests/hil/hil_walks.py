@@ -35,6 +35,7 @@ def walk(seconds, step_time=0.5, **columns):
         "heading": np.zeros(count),
         "speed": np.full(count, 0.25),
         "lateral": np.zeros(count),
+        "water_level": np.zeros(count),
         "control_ns": np.full(count, 200_000),
         "cycle_ns": np.full(count, 500_000),
     }

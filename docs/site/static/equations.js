@@ -1,0 +1,7 @@
+// Sets every equation of the page.
+for (const place of document.querySelectorAll(".equation")) {
+  katex.render(place.textContent, place, {
+    displayMode: place.tagName === "DIV",
+    throwOnError: false,
+  });
+}

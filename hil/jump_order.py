@@ -1,0 +1,18 @@
+"""What a jump is asked to be: target, airtime, push and gravity."""
+
+from pydantic import PositiveFloat
+
+from hil.validation import Config
+
+
+class JumpOrder(Config):
+    """One jump; the robot's own axes at the start: x forward, y left, z up."""
+
+    target: tuple[float, float, float]
+    """Displacement of the feet's centre; z is the height of the landing surface [m]."""
+    airtime: PositiveFloat
+    """[s]"""
+    push_depth: PositiveFloat
+    """How far the centre of mass rises while the feet push [m]."""
+    gravity: PositiveFloat = 9.81
+    """[m/s²]"""

@@ -1,0 +1,112 @@
+"""The report keys of a jump, from its trace and its plan."""
+
+from collections.abc import Callable
+from typing import Any, Protocol
+
+import numpy as np
+
+from hil.interface import Floats
+from hil.trace import Trace
+
+STILL = 0.1
+"""Speed of the centre of mass below which a robot counts as standing, in √(g·h)."""
+TOUCHING = 0.01
+"""Share of the mean load that is a contact."""
+KEYS = (
+    "landing_error_m",
+    "apex_error_m",
+    "takeoff_velocity_error_mps",
+    "airtime_s",
+    "peak_joint_torque_ratio",
+    "landed_standing",
+)
+
+
+class PlannedPath(Protocol):
+    """The part of a planned path that a report compares."""
+
+    @property
+    def take_off_velocity(self) -> Floats:
+        """[m/s], (3,)."""
+        ...
+
+    @property
+    def apex(self) -> Floats:
+        """Highest point of the centre of mass [m], (3,)."""
+        ...
+
+
+class Plan(Protocol):
+    """The part of a jump's plan that a report compares."""
+
+    @property
+    def feet(self) -> Floats:
+        """Centre of the soles at the start [m], (3,)."""
+        ...
+
+    @property
+    def landing_feet(self) -> Floats:
+        """Where it shall be in the end [m], (3,)."""
+        ...
+
+    @property
+    def path(self) -> PlannedPath:
+        """From the begin of the push."""
+        ...
+
+
+class Placed:
+    """The body of one tick of a trace, at rest: a `controller.robot_model.BodyState`."""
+
+    def __init__(self, trace: Trace, tick: int) -> None:
+        self.base_position = trace.base_position[tick]
+        self.base_orientation = trace.base_orientation[tick]
+        self.joint_position = trace.joint_position[tick]
+        self.base_linear_velocity = self.base_angular_velocity = np.zeros(3)
+        self.joint_velocity = np.zeros_like(self.joint_position)
+
+
+def flight_of(trace: Trace) -> tuple[int, int] | None:
+    """First tick in the air and first one after it, of the longest flight; None without one."""
+    load = trace.foot_force.sum(axis=(1, 2)) + trace.toe_force.sum(axis=1)
+    airborne = np.concatenate(([False], load < TOUCHING * load.mean(), [False]))
+    edges = np.flatnonzero(np.diff(airborne.astype(np.int8)))
+    begins, ends = edges[::2], edges[1::2]
+    if not begins.size:
+        return None
+    longest = int(np.argmax(ends - begins))
+    return int(begins[longest]), int(ends[longest])
+
+
+def jump_figures(
+    trace: Trace,
+    plan: Plan | None,
+    feet_centre: Callable[[Trace, int], Floats],
+    torque_ratio: float,
+    fell: bool,
+) -> dict[str, Any]:
+    """Landing error at the end of the run, horizontal; apex, take-off and airtime of the flight.
+
+    Errors are measured minus planned; the apex signed, the others as a distance. A jump that never
+    left the ground has an airtime of 0, and no errors.
+    """
+    figures: dict[str, Any] = dict.fromkeys(KEYS)
+    figures["peak_joint_torque_ratio"] = torque_ratio
+    figures["landed_standing"], figures["airtime_s"] = False, 0.0
+    flight = flight_of(trace)
+    if plan is None or flight is None:
+        return figures
+    begin, end = flight
+    moved = feet_centre(trace, -1) - feet_centre(trace, max(begin - 1, 0))
+    wanted = plan.landing_feet - plan.feet
+    figures["landing_error_m"] = float(np.hypot(*(moved - wanted)[:2]))
+    figures["apex_error_m"] = float(trace.com[begin:end, 2].max() - plan.path.apex[2])
+    missed = trace.com_velocity[begin] - plan.path.take_off_velocity
+    figures["takeoff_velocity_error_mps"] = float(np.linalg.norm(missed))
+    period = float(np.mean(np.diff(trace.time_s)))
+    figures["airtime_s"] = (end - begin) * period
+    speed = float(np.linalg.norm(trace.com_velocity[-1]))
+    still = speed < STILL * float(np.sqrt(9.81 * trace.com[0, 2]))
+    both = bool((trace.foot_force[-1].sum(axis=1) > 0.0).all())
+    figures["landed_standing"] = both and still and not fell
+    return figures
