@@ -12,6 +12,7 @@ from hil.convex_hull import convex_hull
 from hil.description import RobotDescription
 from hil.figure_style import BODY, LEFT, RIGHT
 from hil.interface import Floats
+from hil.posed_model import PosedModel
 from hil.trace import Trace
 
 CIRCLE = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
@@ -36,13 +37,9 @@ class Outline:
     """Draws a robot at recorded poses, seen from its right."""
 
     def __init__(self, description: RobotDescription) -> None:
-        self._model = mujoco.MjModel.from_xml_path(str(description.model_path))
-        self._data = mujoco.MjData(self._model)
-        self._root = description.root
-        model = self._model
-        self._free = int(model.jnt_qposadr[model.body(description.root).jntadr[0]])
-        self._angles = [int(model.joint(name).qposadr[0]) for name in description.joint_names]
-        parts = [self._part(geom) for geom in range(model.ngeom)]
+        self._body = PosedModel(description)
+        self._model, self._root = self._body.model, description.root
+        parts = [self._part(geom) for geom in range(self._model.ngeom)]
         self._parts = sorted((part for part in parts if part), key=lambda part: part.depth)
 
     def draw(self, axes: Axes, trace: Trace, tick: int, offset: float) -> None:
@@ -61,11 +58,8 @@ class Outline:
         offset: float,
     ) -> None:
         """Add the outline of one posture, seen across the heading `yaw` [rad]."""
-        data, free = self._data, self._free
-        data.qpos[free : free + 3] = base_position
-        data.qpos[free + 3 : free + 7] = base_orientation
-        data.qpos[self._angles] = joint_position
-        mujoco.mj_kinematics(self._model, data)
+        self._body.place(base_position, base_orientation, joint_position)
+        data = self._body.data
         # World axes to the picture's: along the heading, and up.
         view = np.array([[np.cos(yaw), np.sin(yaw), 0.0], [0.0, 0.0, 1.0]])
         origin = view @ base_position - [offset, base_position[2]]

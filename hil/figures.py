@@ -13,15 +13,12 @@ from hil.figure_robot import Outline
 from hil.figure_style import BODY, LEFT, LIMIT, RIGHT, STYLE, WARNING, WATER
 from hil.gait_report import gait_figures
 from hil.interface import CORNERS, Floats
+from hil.report_words import ON_THE_GROUND
 from hil.trace import Trace
 
 INSTANTS = 10
 STRIP_STEPS = 4
 FORCE_WINDOW_S = 4.0
-
-
-OFF_THE_GROUND = (", stand", ", sit", ", hoisted", ", jump")
-"""Ends of the names of rungs on which no distance is walked."""
 
 
 def draw_run(trace: Trace, description: RobotDescription, meta: dict[str, Any], path: Path) -> None:
@@ -53,7 +50,7 @@ def title(trace: Trace, meta: dict[str, Any]) -> str:
     figures = gait_figures(trace, meta["weight_n"])
     what = f"{meta['robot']}, {meta['rung']}, {meta['rate_hz']} Hz, seed {meta['seed']}: "
     duration = f"{trace.time_s[-1]:.0f} s"
-    if meta["rung"].endswith(OFF_THE_GROUND):
+    if meta["rung"] not in ON_THE_GROUND:
         return f"{what}{figures['steps']} steps in {duration}"
     return (
         f"{what}{figures['steps']} steps, {figures['distance_m']:.2f} m in {duration}, "

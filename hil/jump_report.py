@@ -1,6 +1,7 @@
 """The report keys of a jump, from its trace and its plan."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
@@ -35,6 +36,15 @@ class PlannedPath(Protocol):
         """Highest point of the centre of mass [m], (3,)."""
         ...
 
+    @property
+    def duration(self) -> float:
+        """Push and flight together [s]."""
+        ...
+
+    def position(self, time: Floats) -> Floats:
+        """Centre of mass [m], (k, 3), at k times from the begin of the push [s]."""
+        ...
+
 
 class Plan(Protocol):
     """The part of a jump's plan that a report compares."""
@@ -64,6 +74,27 @@ class Placed:
         self.joint_position = trace.joint_position[tick]
         self.base_linear_velocity = self.base_angular_velocity = np.zeros(3)
         self.joint_velocity = np.zeros_like(self.joint_position)
+
+
+@dataclass(frozen=True, slots=True)
+class JumpReview:
+    """What is known of a jump once it is over, beside its trace."""
+
+    plan: Callable[[], Plan | None]
+    """None if it ended before its first step."""
+    soles: Callable[[Trace, int], Floats]
+    """Corners of the soles at a tick of a trace [m], (2, 4, 3)."""
+    torque_ratio: Callable[[], float]
+    """Largest torque asked for, as a share of its joint's limit."""
+
+    def figures(self, trace: Trace, fell: bool) -> dict[str, Any]:
+        """The report keys."""
+
+        def centre(trace: Trace, tick: int) -> Floats:
+            middle: Floats = self.soles(trace, tick).mean(axis=(0, 1))
+            return middle
+
+        return jump_figures(trace, self.plan(), centre, self.torque_ratio(), fell)
 
 
 def flight_of(trace: Trace) -> tuple[int, int] | None:

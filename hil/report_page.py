@@ -12,12 +12,10 @@ from hil.errors import InputError
 from hil.gait_report import gait_figures, percentiles_ms
 from hil.plots.catalogue import PLOTS, draw_plot
 from hil.plots.plotted_run import PlottedRun
-from hil.report_words import GROUND_FIGURES, MAIN_FIGURES, number
+from hil.report_words import ON_THE_GROUND, main_figures, number
 
 FILES = ("report.json", "meta.json", "session.mcap", "picture.png")
 """What the page links to, where it lies beside it."""
-GROUND = ("simulation", "dry run", "live")
-"""Rungs on which a robot walks on the ground."""
 
 
 def write_report_page(folder: Path, run: PlottedRun, path: Path) -> None:
@@ -40,7 +38,7 @@ def report_page(run: PlottedRun, links: list[str]) -> str:
         run=run,
         meta=run.meta,
         verdict=verdict(run),
-        tiles=_tiles(report, run.meta["rung"]),
+        tiles=main_figures(report, on_the_ground=run.meta["rung"] in ON_THE_GROUND),
         faults=run.faults,
         plots=_plots(run),
         settings=settings(run.meta["request"]),
@@ -83,16 +81,6 @@ def settings(request: dict[str, Any]) -> dict[str, str]:
         elif value is not None and value is not False and value not in ([], ""):
             flat[key] = _shown(value)
     return flat
-
-
-def _tiles(report: dict[str, Any], rung: str) -> list[tuple[str, str, str]]:
-    """Main figures that are known: name, value, unit."""
-    hidden = () if rung in GROUND else GROUND_FIGURES
-    return [
-        (name, number(report[key]), unit)
-        for name, key, unit in MAIN_FIGURES
-        if report.get(key) is not None and key not in hidden
-    ]
 
 
 def _plots(run: PlottedRun) -> list[dict[str, str]]:

@@ -1,5 +1,6 @@
 """The figures of a run as people read them: which ones first, their names and units."""
 
+from collections.abc import Mapping
 from typing import Any
 
 MAIN_FIGURES = (
@@ -44,6 +45,18 @@ GROUND_FIGURES = (
     "disequilibrium_pct",
 )
 """What says nothing of a robot that does not walk on the ground."""
+ON_THE_GROUND = ("simulation", "dry run", "live")
+"""Rungs on which a robot walks on the ground."""
+
+
+def main_figures(report: Mapping[str, Any], *, on_the_ground: bool) -> list[tuple[str, str, str]]:
+    """Main figures that are known: name, value, unit."""
+    hidden = () if on_the_ground else GROUND_FIGURES
+    return [
+        (name, number(report[key]), unit)
+        for name, key, unit in MAIN_FIGURES
+        if report.get(key) is not None and key not in hidden
+    ]
 
 
 def number(value: Any) -> str:

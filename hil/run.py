@@ -10,6 +10,7 @@ from hil.bringup.ladder import note_hoisted_walk
 from hil.cycle import Sink
 from hil.errors import StrideError
 from hil.figures import draw_run
+from hil.figures_jump_run import draw_jump_run
 from hil.loop import Loop, Outcome
 from hil.recorder import Recorder
 from hil.report import make_report, rounded
@@ -83,7 +84,7 @@ def session_report(
         truth=session.world is not None,
     )
     if session.jump is not None:
-        report |= rounded(session.jump(trace, outcome.fell))
+        report |= rounded(session.jump.figures(trace, outcome.fell))
     return report
 
 
@@ -119,8 +120,16 @@ class Books:
         if session.request.report is not None:
             write_json(session.request.report, report)
         if len(trace) > 1:
-            draw_run(trace, session.description, self._meta, self.folder / "picture.png")
+            self._draw(trace)
         return report
+
+    def _draw(self, trace: Trace) -> None:
+        description, jump = self._session.description, self._session.jump
+        picture = self.folder / "picture.png"
+        if jump is None:
+            draw_run(trace, description, self._meta, picture)
+        else:
+            draw_jump_run(trace, description, self._meta, jump, picture)
 
     def _close_recorder(self, outcome: Outcome) -> None:
         """A recording that failed is a fault of the run; it does not hide how the run ended."""

@@ -10,7 +10,7 @@ from hil.interface import Backend, Controller, Estimator, World
 from hil.request import RunRequest
 
 if TYPE_CHECKING:
-    from hil.trace import Trace
+    from hil.jump_report import JumpReview
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,8 +34,8 @@ class Session:
     begin_faults: Callable[[int], None] | None = None
     """Tells a virtual robot when T = 0 is [ns on the backend's clock], where its faults wait for
     it."""
-    jump: "Callable[[Trace, bool], dict[str, Any]] | None" = None
-    """Of a jump: its report keys, from its trace and whether it fell."""
+    jump: "JumpReview | None" = None
+    """Of a jump: what its report keys and its picture are made from."""
     watch: Callable[[], str | None] | None = None
     """Asked after every tick with torque on: what else is wrong, or nothing."""
     closers: tuple[Callable[[], None], ...] = ()

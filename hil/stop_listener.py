@@ -13,6 +13,7 @@ import threading
 import tty
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
+from functools import partial
 from pathlib import Path
 from typing import Protocol
 
@@ -34,6 +35,8 @@ CLIENT_TIMEOUT_S = 0.05
 
 LINE = 128
 """Longest line of a client or of the view [bytes]."""
+TYPED = 4096
+"""Most that a terminal holds of what was typed [bytes] (termios(3), canonical mode)."""
 
 Source = Callable[[], bool]
 """Serves what is readable; False when there will be nothing more."""
@@ -68,6 +71,7 @@ class StopListener:
             ending, end = socket.socketpair()
             stack.enter_context(ending)
             sources: dict[int, Source] = {}
+            early: Callable[[], None] | None = None
             steering = self._steering
             helm = None if steering is None else steering.helm
             say = None if helm is None else helm.post
@@ -75,12 +79,13 @@ class StopListener:
                 stack.enter_context(_single_keys())
                 reader = KeyReader()
                 sources[sys.stdin.fileno()] = lambda: _take_keys(reader, post, say)
+                early = partial(_hear, reader, _typed(), post, None)
                 sys.stderr.write(HINT + ("" if say is None else STEERING_HINT))
             listener = stack.enter_context(_bound(self._folder))
             sources[listener.fileno()] = lambda: _take_client(listener, post, say)
             if steering is not None:
                 sources.update(stack.enter_context(_steered(steering, post, say)))
-            thread = threading.Thread(target=_listen, args=(ending, sources), daemon=True)
+            thread = threading.Thread(target=_listen, args=(ending, sources, early), daemon=True)
             thread.start()
             stack.callback(thread.join)
             stack.enter_context(end)  # closed first: that ends the thread
@@ -96,7 +101,11 @@ def ask_to_stop(folder: Path, word: str) -> None:
         client.recv(16)
 
 
-def _listen(ending: socket.socket, sources: dict[int, Source]) -> None:
+def _listen(
+    ending: socket.socket, sources: dict[int, Source], early: Callable[[], None] | None
+) -> None:
+    if early is not None:
+        early()
     while True:
         ready, _, _ = select.select([ending.fileno(), *sources], [], [])
         if ending.fileno() in ready:
@@ -106,17 +115,33 @@ def _listen(ending: socket.socket, sources: dict[int, Source]) -> None:
                 del sources[number]
 
 
-def _take_keys(reader: KeyReader, post: Post, say: Say) -> bool:
+def _typed() -> bytes:
+    """What was typed before anybody listened. It stops and never steers: a second Enter after the
+    consent must not begin a walk.
+    """
+    number = sys.stdin.fileno()
+    return _read(number) if select.select([number], [], [], 0.0)[0] else b""
+
+
+def _read(terminal: int) -> bytes:
     try:
-        keys = os.read(sys.stdin.fileno(), 16)
+        return os.read(terminal, TYPED)
     except OSError:
-        keys = b""  # The terminal is gone, which SIGHUP tells too.
+        return b""  # The terminal is gone, which SIGHUP tells too.
+
+
+def _take_keys(reader: KeyReader, post: Post, say: Say) -> bool:
+    keys = _read(sys.stdin.fileno())
+    _hear(reader, keys, post, say)
+    return bool(keys)
+
+
+def _hear(reader: KeyReader, keys: bytes, post: Post, say: Say) -> None:
     for key in reader.keys(keys):
         if key in KEYS:
             post("key space" if key == b" " else f"key {key.decode()}", now=KEYS[key])
         elif say is not None and key in STEERING_KEYS:
             say(STEERING_KEYS[key])
-    return bool(keys)
 
 
 @contextmanager

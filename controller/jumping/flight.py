@@ -54,7 +54,8 @@ class Flight:
     """In the air: tuck, then the feet go to where they shall land.
 
     Begins when the push is over, with the feet still on the ground; over with the first contact
-    after they have left it, or when the time of the landing is long past.
+    after they have left it, of both or of one for two ticks, or when the time of the landing is
+    long past.
     """
 
     def __init__(self, kit: Kit, plan: JumpPlan, tuck: float, down: float) -> None:
@@ -63,7 +64,7 @@ class Flight:
         """
         self._kit, self._plan, self._tuck = kit, plan, tuck
         self._elapsed = 0.0
-        self._left_ground = False
+        self._left_ground = self._touched = False
         body = kit.tasks.body
         com, velocity = body.robot.com, body.robot.com_velocity
         ankles = np.array(body.robot.ankles)
@@ -85,9 +86,10 @@ class Flight:
         fall = time_to_fall(float(com[2]) - self._down, float(velocity[2]), kit.gravity)
         touching = bool(estimate.contact.any())
         self._left_ground = self._left_ground or not touching
-        self.over = (self._left_ground and touching) or (
-            fall <= 0.0 and self._elapsed > OVERDUE * self._airtime
-        )
+        # One foot that brushes an edge is free again within a tick, and no landing.
+        landed = self._left_ground and touching and (self._touched or bool(estimate.contact.all()))
+        self._touched = touching
+        self.over = landed or (fall <= 0.0 and self._elapsed > OVERDUE * self._airtime)
         self._advance(com, velocity, fall)
         places = np.array([foot.position for foot in self._feet]) + com
         velocities = np.array([foot.velocity for foot in self._feet]) + velocity

@@ -97,7 +97,8 @@ class Stand:
         body = kit.tasks.body
         self._elapsed += kit.dt
         bearing = estimate.contact.copy()
-        kit.tasks.set_lean(0.0, 0.0)
+        kit.tasks.task.cautious = True
+        kit.tasks.bow(kit.depth)
         share = min(max(self._elapsed / self._after - 1.0, 0.0), 1.0)
         share *= share * (3.0 - 2.0 * share)
         support = kit.tasks.support(bearing)

@@ -10,6 +10,8 @@ from hil.interface import Bools, Floats
 
 TINY = 1e-9
 """Keeps the system of equations regular when a robot has fallen apart from its plan."""
+CARRIED = 0.9
+"""Share of a joint's limit that may go into carrying the ground's force."""
 
 
 class BodyTask:
@@ -29,6 +31,8 @@ class BodyTask:
         """ε of the rows of the feet and of the root's attitude: a leg that is all but straight
         cannot follow everything.
         """
+        self.cautious = False
+        """No foot takes more than its leg's joints can carry."""
         self.posture = np.zeros(nv)
         """Wanted acceleration of every degree of freedom, where it is free [SI]."""
         self.weight = weight
@@ -78,6 +82,7 @@ class WholeBody:
         self.forces = np.zeros((2, 4, 3))
         """Corner forces of the last `torques` [N]."""
         self.ground = GroundForce(robot.mass * gravity, robot.leg_length, friction)
+        self._limits = np.array([joint.torque_limit for joint in description.joints])
         self.acceleration = np.zeros(nv)
         """Of every degree of freedom, as the last `torques` asked for it."""
 
@@ -119,9 +124,22 @@ class WholeBody:
         levers = (self.corners - self.robot.com).reshape(8, 3)
         wrench = np.concatenate((task.force, task.moment))
         forces = self.ground.spread(wrench, levers, task.bearing.ravel()).reshape(2, 4, 3)
+        if task.cautious:
+            self._ease(forces)
         self.forces[:] = forces
         pressed: Floats = self.foot_jacobian.T @ self._foot_wrenches(forces)
         return pressed
+
+    def _ease(self, forces: Floats) -> None:
+        """Lessen the forces under a foot, (2, 4, 3), to what its leg's joints carry.
+
+        A knee that gives way under more lets its hip sink, and the pelvis rolls.
+        """
+        wrenches = self._foot_wrenches(forces).reshape(2, 6)
+        for foot in range(2):
+            rows = slice(6 * foot, 6 * foot + 6)
+            load = (self.foot_jacobian[rows].T @ wrenches[foot])[self.robot.dof_addresses]
+            forces[foot] /= max(1.0, float(np.abs(load / self._limits).max()) / CARRIED)
 
     def _solve(
         self, task: BodyTask, rows: Floats, wanted: Floats, slack: Floats, pressed: Floats

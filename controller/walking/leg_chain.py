@@ -77,8 +77,10 @@ class LegChain:
     def solve(self, ankle: Sequence[float], foot: Rows) -> list[float]:
         """The six joint angles [rad], as `LegGeometry.solve`.
 
-        It begins with the corrections of its last call: a leg moves little from tick to tick.
+        It begins with the corrections of its last call: a leg moves little from tick to tick. Out
+        of reach they would only grow, so those that do not help are forgotten.
         """
+        first = 0.0
         for _ in range(ROUNDS):
             (mx, my, mz), twist = self._moved, self._twisted
             point = (ankle[0] + mx, ankle[1] + my, ankle[2] + mz)
@@ -86,10 +88,15 @@ class LegChain:
             (x, y, z), facing = self.forward(angles)
             ex, ey, ez = ankle[0] - x, ankle[1] - y, ankle[2] - z
             left = product(transposed(facing), foot)
-            if max(abs(ex), abs(ey), abs(ez), *_off_diagonal(left)) < ENOUGH:
+            error = max(abs(ex), abs(ey), abs(ez), *_off_diagonal(left))
+            if error < ENOUGH:
                 break
+            first = first or error
             self._moved = (mx + ex, my + ey, mz + ez)
             self._twisted = product(left, twist)
+        else:
+            if error > 0.5 * first:
+                self._moved, self._twisted = NOWHERE, ONE
         return angles
 
     def _guess(self, point: Vector, foot: Rows) -> list[float]:

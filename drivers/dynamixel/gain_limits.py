@@ -98,8 +98,9 @@ def require_mode(joint: Joint) -> ServoMode:
     model = None if joint.servo is None else find_servo_model(joint.servo)
     usable = ("position",) if model is None else usable_modes(model)
     if joint.mode not in usable:
+        servo = joint.servo or "a servo that is not filled in"
         raise InputError(
-            f"joint {joint.name}: {joint.servo} cannot make a stiffness in mode {joint.mode}; "
+            f"joint {joint.name}: {servo} cannot make a stiffness in mode {joint.mode}; "
             f"valid: {', '.join(usable)}"
         )
     return mode

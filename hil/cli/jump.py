@@ -55,7 +55,8 @@ def jump(
 
     A jump beyond the joints' torques or speeds is refused before anything moves, with the largest
     one that fits. Z other than 0 puts a step there; below 0 the robot starts on it.
-    Exit code 0: landed standing; 1: fell or had to stop; 2: bad input, nothing was started.
+    Exit code 0: at the end it stands still where it landed; 1: it does not (it fell, had to stop,
+    never left the ground, or still moves); 2: bad input, nothing was started.
     """
     changes = tuple(overrides or ())
     if push_depth is None:

@@ -40,8 +40,8 @@ def plot(
 ) -> None:
     """Draw a run from its recording, even if the run was killed.
 
-    Without options it is picture.png again. The page of --html is one file that needs no network
-    and no other file. See docs/reports.md.
+    Without options it is picture.png again; of a jump, whose picture is another, walk.png. The
+    page of --html is one file that needs no network and no other file. See docs/reports.md.
     """
     from hil.errors import InputError
     from hil.plots.plotted_run import plotted_run
@@ -55,7 +55,8 @@ def plot(
         write_report_page(run, plotted, path)
     else:
         name = figure or PICTURE
-        path = out or run / ("picture.png" if figure is None else f"{name}.png")
+        again = figure is None and not plotted.meta["rung"].endswith(", jump")
+        path = out or run / ("picture.png" if again else f"{name}.png")
         _draw(plotted, name, path)
     sys.stdout.write(f"{path}\n")
 

@@ -33,7 +33,9 @@ def live_ports(
 
 
 def conduct(request: RunRequest, *, yes: bool, as_json: bool) -> None:
-    """Run what was asked for; a real robot only after a yes. Raises Exit(1) if it had to stop.
+    """Run what was asked for; a real robot only after a yes.
+
+    Raises Exit(1) if it had to stop, or if a jump did not end standing.
 
     Parts that take long to import come last: a wrong option is answered at once.
     """
@@ -59,4 +61,6 @@ def conduct(request: RunRequest, *, yes: bool, as_json: bool) -> None:
         print_report(result.report, "" if rung == "walk" else rung)
         sys.stdout.write(f"{result.folder}\n")
     if any(fault["reaction"] != "none" for fault in result.report["faults"]):
+        raise Exit(1)
+    if result.report.get("landed_standing") is False:
         raise Exit(1)

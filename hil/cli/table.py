@@ -8,7 +8,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from hil.report_words import GROUND_FIGURES, MAIN_FIGURES, number
+from hil.report_words import main_figures
 
 PAGE_COLUMNS = 160
 
@@ -29,14 +29,9 @@ def print_report(report: dict[str, Any], rung: str = "") -> None:
     `rung`: what the robot did instead of walking on the ground.
     """
     where = report["backend"] if report["bus"] is None else f"{report['bus']} bus"
-    hidden = GROUND_FIGURES if rung else ()
     what = f"{report['robot']}, {rung}" if rung else report["robot"]
     title = f"{what}, {where}, {report['rate_hz']} Hz, seed {report['seed']}"
-    rows = [
-        (name, number(report[key]), unit)
-        for name, key, unit in MAIN_FIGURES
-        if report.get(key) is not None and key not in hidden
-    ]
+    rows = main_figures(report, on_the_ground=not rung)
     print_rows(title, ("", f"motion from {report['motion_source']}", ""), rows)
     for fault in report["faults"]:
         line = f"{fault['time_s']:.2f} s: {fault['source']}: {fault['name']} ({fault['reaction']})"

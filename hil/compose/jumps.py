@@ -1,8 +1,5 @@
 """Jumps put together: what the plant needs for one, its controller, and what became of it."""
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 
 from controller.jumping.feasibility import require_feasible
@@ -15,7 +12,7 @@ from hil.description import RobotDescription
 from hil.errors import InputError
 from hil.interface import Floats
 from hil.jump_order import JumpOrder
-from hil.jump_report import Placed, jump_figures
+from hil.jump_report import JumpReview, Placed
 from hil.request import RunRequest
 from hil.robot_files import load_robot
 from hil.trace import Trace
@@ -90,21 +87,15 @@ def jump_controller(
     return ServoHop(description, rate_hz, curves, pace)
 
 
-def jump_reporter(
-    description: RobotDescription, controller: JumpController | ServoHop
-) -> Callable[[Trace, bool], dict[str, Any]]:
-    """What makes the report keys of a jump from its trace and whether it fell."""
+def jump_review(description: RobotDescription, controller: JumpController | ServoHop) -> JumpReview:
+    """What report and picture of a jump are made from, beside its trace."""
     robot = RobotModel(description)
 
-    def feet_centre(trace: Trace, tick: int) -> Floats:
+    def soles(trace: Trace, tick: int) -> Floats:
         robot.set_state(Placed(trace, tick))
-        centre: Floats = robot.corner_positions.mean(axis=(0, 1))
-        return centre
+        return robot.corner_positions.copy()
 
-    def report(trace: Trace, fell: bool) -> dict[str, Any]:
-        return jump_figures(trace, controller.plan, feet_centre, controller.torque_ratio, fell)
-
-    return report
+    return JumpReview(lambda: controller.plan, soles, lambda: controller.torque_ratio)
 
 
 def default_push_depth(robot: str, overrides: tuple[str, ...]) -> float:

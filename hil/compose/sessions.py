@@ -19,7 +19,7 @@ from drivers.motor_constants import motor_parameters
 from drivers.robot_backend import BusBackend
 from hil.bringup.ladder import calibration_file, on_the_ground, require_hoisted_walk
 from hil.clock import MonotonicClock
-from hil.compose.jumps import jump_changes, jump_controller, jump_reporter
+from hil.compose.jumps import jump_changes, jump_controller, jump_review
 from hil.description import RobotDescription
 from hil.errors import DescriptionError, InputError
 from hil.interface import Controller, Estimator, WalkStatus, World
@@ -190,7 +190,7 @@ def _session(
     hidden = hidden_values(description, request.seed).as_dict() if world is not None else {}
     meta = {"hidden": hidden}
     if isinstance(controller, JumpController | ServoHop):
-        more["jump"] = jump_reporter(description, controller)
+        more["jump"] = jump_review(description, controller)
     if isinstance(backend, BusBackend) and not request.lockstep:
         more["watch"] = lambda: "guardian lost" if backend.guardian_lost() else None
     return Session(request, description, backend, estimator, controller, world, meta, **more)

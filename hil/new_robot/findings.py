@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 
 from hil.interface import Floats
+from hil.joint_gains import kind_of
 from hil.new_robot.gait import Fitted, crouch
 from hil.new_robot.joints import Drive, JointLines
 from hil.new_robot.limbs import Legs
@@ -117,7 +118,7 @@ def _weak(joints: tuple[JointLines, ...], scale: Scale) -> list[Finding]:
     """Joints of the model with far less torque than the gait's own robot would have."""
     shares = {
         joint.name: joint.torque_limit
-        / (pattern_joint(joint.name.split("_", 1)[1]).torque_limit * scale.torque)
+        / (pattern_joint(kind_of(joint.name)).torque_limit * scale.torque)
         for joint in joints
     }
     weak = {name: share for name, share in shares.items() if share < WEAK}
@@ -155,7 +156,7 @@ def _poses(angles: dict[str, float], joints: tuple[JointLines, ...]) -> list[Fin
     """Joints whose ranges do not let the robot stand as it walks."""
     rows = []
     for joint in joints:
-        wanted = angles.get(joint.name.split("_", 1)[1])
+        wanted = angles.get(kind_of(joint.name))
         low, high = joint.range
         if wanted is not None and not low <= wanted <= high:
             rows.append(

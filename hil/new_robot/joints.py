@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hil.interface import SIDES
 from hil.new_robot.posture import Posture
 from hil.new_robot.roles import LEG_JOINTS
 from hil.new_robot.similar import Scale, pattern_armature, pattern_joint
@@ -76,7 +77,7 @@ def joint_lines(
     """
     return tuple(
         _joint(source, posture, side, index, role, scale, drive)
-        for index, side in enumerate(("left", "right"))
+        for index, side in enumerate(SIDES)
         for role in LEG_JOINTS
     )
 

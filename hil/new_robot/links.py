@@ -5,8 +5,9 @@ from dataclasses import dataclass
 import mujoco
 import numpy as np
 
-from hil.interface import Floats
+from hil.interface import SIDES, Floats
 from hil.new_robot.posture import Posture
+from hil.new_robot.source import free_joint
 
 TRUNK = "torso"
 """Everything that is no leg, held in its own pose."""
@@ -30,20 +31,15 @@ def links_of(posture: Posture) -> dict[str, Link]:
     """The links by name: the torso, and one for each leg joint, `left_knee`."""
     model = posture.model
     owner = {}
-    for side, leg in zip(("left", "right"), posture.legs, strict=True):
+    for side, leg in zip(SIDES, posture.legs, strict=True):
         for joint in leg.roled.joints:
             owner[joint.joint] = f"{side}_{joint.role}"
     members: dict[str, list[int]] = {TRUNK: [], **{name: [] for name in owner.values()}}
-    root = _root(model)
+    root = int(model.jnt_bodyid[free_joint(model)])
     for body in range(1, model.nbody):
         if model.body_rootid[body] == model.body_rootid[root]:
             members[_link(model, body, owner)].append(body)
     return {name: _sum(posture, name, bodies) for name, bodies in members.items()}
-
-
-def _root(model: mujoco.MjModel) -> int:
-    free = mujoco.mjtJoint.mjJNT_FREE
-    return int(model.jnt_bodyid[next(j for j in range(model.njnt) if model.jnt_type[j] == free)])
 
 
 def _link(model: mujoco.MjModel, body: int, owner: dict[int, str]) -> str:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hil.interface import Floats
+from hil.interface import SIDES, Floats
 from hil.new_robot.joints import JointLines
 from hil.new_robot.links import TRUNK, Link
 from hil.new_robot.posture import PosedLeg, Posture
@@ -56,7 +56,7 @@ def write_mjcf(
         "  " + _box("torso_shape", trunk, origin),
     ]
     whole = sum(link.mass for link in links.values())
-    for side, leg, sole in zip(("left", "right"), posture.legs, soles, strict=True):
+    for side, leg, sole in zip(SIDES, posture.legs, soles, strict=True):
         lines += ["  " + line for line in _leg(side, leg, links, sole, joints, origin, whole)]
     lines.append("</body>")
     body = "\n".join("    " + line for line in lines)

@@ -8,7 +8,7 @@ import numpy as np
 from hil.interface import Floats
 from hil.new_robot.limbs import Legs
 from hil.new_robot.roles import LEG_JOINTS, RoledLeg
-from hil.new_robot.source import Source
+from hil.new_robot.source import Source, free_joint
 
 HIP = ("hip_yaw", "hip_roll", "hip_pitch")
 ANKLE = ("ankle_pitch", "ankle_roll")
@@ -88,7 +88,7 @@ def zero_pose(source: Source, legs: Legs, roled: tuple[RoledLeg, RoledLeg]) -> P
 
 def _turn(model: mujoco.MjModel, data: mujoco.MjData, heading: float) -> None:
     """Turn the free root so that the robot looks along x."""
-    root = next(j for j in range(model.njnt) if model.jnt_type[j] == mujoco.mjtJoint.mjJNT_FREE)
+    root = free_joint(model)
     turn, old = np.zeros(4), np.zeros(4)
     mujoco.mju_axisAngle2Quat(turn, np.array([0.0, 0.0, 1.0]), -heading)
     place = slice(model.jnt_qposadr[root] + 3, model.jnt_qposadr[root] + 7)

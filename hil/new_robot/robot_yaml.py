@@ -7,6 +7,7 @@ from typing import Any
 
 import yaml
 
+from hil.joint_gains import kind_of
 from hil.new_robot.gait import Fitted, crouch, walking_section
 from hil.new_robot.joints import Drive, JointLines
 from hil.new_robot.posture import Posture
@@ -17,7 +18,7 @@ HEADER = """\
 # {name}: written by `stride new-robot {file}` from a model with {mass:.3g} kg and legs of
 # {leg:.3g} m. docs/new-robot.md says what to do with it. `stride check --description {name}.yaml`
 # lists what is still missing. Lines marked (assumed) are minibiped's, scaled by mass and leg.
-name: {name}
+name: "{name}"
 model: {name}.xml
 actuation: servo
 root: torso
@@ -139,7 +140,7 @@ class RobotFile:
         return {
             joint.name: round(min(max(angles[role], joint.range[0]), joint.range[1]), 4)
             for joint in self.joints
-            for role in [joint.name.split("_", 1)[1]]
+            for role in [kind_of(joint.name)]
             if role in angles
         }
 

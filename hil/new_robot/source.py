@@ -30,8 +30,10 @@ def read_source(path: Path) -> Source:
         raise InputError(f"{path}: no such file")
     try:
         root = ElementTree.parse(path).getroot()
-    except ElementTree.ParseError as error:
+    except (ElementTree.ParseError, LookupError) as error:  # LookupError: an unknown encoding
         raise InputError(f"{path}: is not XML: {error}") from error
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from error
     notes: list[str] = []
     speeds: dict[str, float] = {}
     try:
@@ -51,6 +53,12 @@ def read_source(path: Path) -> Source:
         ) from error
     _refuse_loops(path, model)
     return Source(path, model, speeds, tuple(notes))
+
+
+def free_joint(model: mujoco.MjModel) -> int:
+    """The first free joint: that of the robot's root."""
+    free = mujoco.mjtJoint.mjJNT_FREE
+    return next(joint for joint in range(model.njnt) if model.jnt_type[joint] == free)
 
 
 def _free_the_root(spec: mujoco.MjSpec, notes: list[str]) -> None:

@@ -1,5 +1,6 @@
 """`stride new-robot` as a function: one model in, one robot folder out."""
 
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -8,6 +9,7 @@ import yaml
 
 from hil.description import RobotDescription
 from hil.errors import InputError
+from hil.interface import SIDES
 from hil.new_robot.findings import Finding, findings_of
 from hil.new_robot.gait import fitted
 from hil.new_robot.joints import Drive, joint_lines
@@ -48,7 +50,7 @@ def new_robot(model_file: Path, name: str, folder: Path, drive: Drive) -> NewRob
     posture = zero_pose(source, legs, roles_of(source, legs))
     links = links_of(posture)
     feet = [f"{side}_{leg.roled.joints[-1].role}"
-            for side, leg in zip(("left", "right"), posture.legs, strict=True)]  # fmt: skip
+            for side, leg in zip(SIDES, posture.legs, strict=True)]  # fmt: skip
     left, right = (
         sole_of(model_file, posture, leg, links[foot], foot.split("_", 1)[0])
         for leg, foot in zip(posture.legs, feet, strict=True)
@@ -62,13 +64,24 @@ def new_robot(model_file: Path, name: str, folder: Path, drive: Drive) -> NewRob
     sit = sitting(mjcf, by_name)
     text = RobotFile(name, model_file.name, mass, scale, posture, fit, joints, sit, drive).text()
     _prove(model_file, mjcf, text, str(paths[0]))
-    folder.mkdir(parents=True, exist_ok=True)
-    for path, content in zip(paths, (text, mjcf), strict=True):
-        path.write_text(content, encoding="utf-8")
+    _write(folder, dict(zip(paths, (text, mjcf), strict=True)))
     found = findings_of(
         source, legs, posture, (left, right), joints, fit, scale, drive, sit is not None
     )
     return NewRobot(paths[0], found)
+
+
+def _write(folder: Path, texts: dict[Path, str]) -> None:
+    """All files or none: half a robot would be in the way of the next try."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for path, content in texts.items():
+            path.write_text(content, encoding="utf-8")
+    except OSError as error:
+        for path in texts:
+            with suppress(OSError):
+                path.unlink()
+        raise InputError(f"--out {folder}: cannot be written: {error.strerror}") from error
 
 
 def _prove(model_file: Path, mjcf: str, text: str, file: str) -> None:

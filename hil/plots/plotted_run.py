@@ -76,8 +76,8 @@ class PlottedRun:
 def plotted_run(folder: Path) -> PlottedRun:
     """Read a run folder for its plots. Raises InputError."""
     recording = read_recording(folder)
-    overrides = tuple(recording.meta["request"]["overrides"])
-    description = load_robot(recording.meta["description"], overrides)
+    request = recording.meta["request"]
+    description = load_robot(request["robot"], tuple(request["overrides"]))
     file = folder / "report.json"
     report = read_json(file) if file.is_file() else None
     return PlottedRun(folder.resolve().name, recording, description, report)

@@ -30,6 +30,10 @@ def draw_servos(figure: Figure, run: PlottedRun) -> None:
 
 def _draw_heat(axes: Axes, run: PlottedRun) -> None:
     values = run.rows["frame"]["joint_temperature"]
+    axes.set(title="Temperature of every servo", xlabel="time [s]", ylabel="[°C]")
+    if not np.isfinite(values).any():
+        _draw_nothing(axes)
+        return
     last = np.array([_last_known(values[:, place]) for place in range(len(run.joints))])
     for place, joint in enumerate(run.joints):
         axes.plot(run.time_s, values[:, place], color=side_colour(joint), linewidth=1.0)
@@ -38,7 +42,6 @@ def _draw_heat(axes: Axes, run: PlottedRun) -> None:
     axes.text(
         0.02, 0.96, "hottest: " + ", ".join(lines), transform=axes.transAxes, va="top", fontsize=8,
     )  # fmt: skip
-    axes.set(title="Temperature of every servo", xlabel="time [s]", ylabel="[°C]")
     low, high = np.nanmin(values), np.nanmax(values)
     axes.set_ylim(low - 2.0, high + 5.0)
     axes.margins(x=0)
@@ -46,7 +49,11 @@ def _draw_heat(axes: Axes, run: PlottedRun) -> None:
 
 def _draw_supply(axes: Axes, run: PlottedRun) -> None:
     values = run.rows["frame"]["joint_voltage"]
+    axes.set(title="Supply at the servos", xlabel="time [s]", ylabel="[V]")
     known = np.isfinite(values).any(axis=1)
+    if not known.any():
+        _draw_nothing(axes)
+        return
     time, seen = run.time_s[known], values[known]
     axes.fill_between(
         time, np.nanmin(seen, axis=1), np.nanmax(seen, axis=1), color="#c9ccd1", linewidth=0,
@@ -60,9 +67,13 @@ def _draw_supply(axes: Axes, run: PlottedRun) -> None:
     lowest = float(np.nanmin(seen))
     axes.plot(time[np.nanargmin(np.nanmin(seen, axis=1))], lowest, "v", color=WARNING, ms=5,
               label=f"lowest, {lowest:.1f} V")  # fmt: skip
-    axes.set(title="Supply at the servos", xlabel="time [s]", ylabel="[V]")
     axes.margins(x=0, y=0.25)
     axes.legend(loc="lower right", ncols=3, fontsize=7)
+
+
+def _draw_nothing(axes: Axes) -> None:
+    """Slow registers are read in turn: a short run may hear of one kind alone."""
+    axes.text(0.5, 0.5, "not heard", transform=axes.transAxes, ha="center", color=LIMIT)
 
 
 def _last_known(values: Floats) -> float:

@@ -15,7 +15,7 @@ def is_wet(run: PlottedRun) -> bool:
 
 
 def draw_water(figure: Figure, run: PlottedRun) -> None:
-    """Level with the heights of hip and knee, and the speed against the level."""
+    """Level with the height of the root body, and the speed against the level."""
     level, speed = figure.subplots(1, 2, width_ratios=(3, 2))
     _draw_level(level, run)
     _draw_speed(speed, run)

@@ -4,9 +4,11 @@ Numbers of axes and buttons are those of the kernel's xpad driver, which most pa
 (Documentation/input/gamepad.rst); read from the device file, without a library.
 """
 
+import fcntl
 import math
 import os
 import select
+import stat
 import struct
 import threading
 from collections.abc import Callable, Iterator
@@ -16,6 +18,7 @@ from pathlib import Path
 from hil.errors import InputError
 from hil.steering.limits import SteerLimits
 from hil.steering.words import Word
+from hil.timing import stopwatch_ns
 
 EVENT = struct.Struct("<IhBB")
 """Time [ms], value, type, number (linux/joystick.h, js_event)."""
@@ -26,6 +29,8 @@ DEAD_ZONE = 0.12
 LEFT_X, LEFT_Y, RIGHT_X = 0, 1, 3
 HOLD, SIT, OFF, START = 4, 1, 6, 7
 """LB, B, Back and Start."""
+JSIOCGVERSION = 0x80046A01
+"""Asks a device for the version of its joystick driver (linux/joystick.h)."""
 PERIOD_S = 0.05
 TURN_RATE = math.radians(25.0)
 """At full deflection [rad/s]."""
@@ -81,7 +86,7 @@ class Gamepad:
     """A thread that reads one pad. A pad that is pulled out stops the robot on the spot."""
 
     def __init__(self, device: Path, limits: SteerLimits) -> None:
-        """Opens the device. Raises InputError."""
+        """Opens the device, or a pipe that carries such events. Raises InputError."""
         self._sticks = Sticks(limits)
         try:
             self._number = os.open(device, os.O_RDONLY | os.O_NONBLOCK)
@@ -90,6 +95,11 @@ class Gamepad:
                 f"--steer {device}: cannot be opened: {error.strerror}; gamepads are "
                 "/dev/input/js0 and so on, and want membership of the group `input`"
             ) from error
+        if not _speaks_events(self._number):
+            os.close(self._number)
+            raise InputError(
+                f"--steer {device}: is no joystick; those are /dev/input/js0 and so on"
+            )
 
     @contextmanager
     def listening(self, post: PostWord, stop: Callable[[str], None]) -> Iterator[None]:
@@ -107,6 +117,7 @@ class Gamepad:
 
     def _listen(self, ending: int, post: PostWord, stop: Callable[[str], None]) -> None:
         sources = [ending, self._number]
+        said_ns = 0
         while True:
             ready, _, _ = select.select(sources, [], [], PERIOD_S)
             if ending in ready:
@@ -114,8 +125,11 @@ class Gamepad:
             if self._number in ready and not self._read(post):
                 post(Word("halt"))
                 sources.remove(self._number)
-            for word in self._sticks.words() if self._number in sources else []:
-                post(word)
+            # A stick that trembles sends events all the time: a turn goes with time, not with them.
+            if self._number in sources and stopwatch_ns() - said_ns >= PERIOD_S * 1e9:
+                said_ns = stopwatch_ns()
+                for word in self._sticks.words():
+                    post(word)
             if self._sticks.stop is not None:
                 stop(self._sticks.stop)
                 self._sticks.stop = None
@@ -130,3 +144,14 @@ class Gamepad:
             for word in self._sticks.take(data[begin : begin + EVENT.size]):
                 post(word)
         return bool(data)
+
+
+def _speaks_events(number: int) -> bool:
+    """Whether js_events come from an open file: from a pipe, or from a joystick's driver."""
+    if stat.S_ISFIFO(os.fstat(number).st_mode):
+        return True
+    try:
+        fcntl.ioctl(number, JSIOCGVERSION, bytes(4))
+    except OSError:
+        return False
+    return True

@@ -11,6 +11,8 @@ from hil.steering.words import Word
 DEAD_MAN_S = 2.0
 """A live robot that is steered and hears nothing for so long stops on the spot."""
 FULL_TURN = 2.0 * math.pi
+FARTHEST = 1000.0 * FULL_TURN
+"""No heading beyond this is asked for: longer than a run, and sums stay finite [rad]."""
 
 
 class Helm:
@@ -76,7 +78,8 @@ class Helm:
         self._set(operator, "lateral", self.limits.lateral(values[0]), time_s)
 
     def _heading(self, operator: Operator, time_s: float, values: tuple[float, ...]) -> None:
-        self._set(operator, "heading", values[0], time_s)
+        heading = max(-FARTHEST, min(values[0], FARTHEST))
+        self._set(operator, "heading", heading, time_s)
 
     def _faster(self, operator: Operator, time_s: float, values: tuple[float, ...]) -> None:
         wanted = self._wanted(operator, "speed", time_s) + values[0]

@@ -5,7 +5,6 @@ import fcntl
 import json
 import sys
 from datetime import UTC, datetime
-from hashlib import sha256
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self, TextIO
@@ -13,7 +12,7 @@ from typing import Any, Self, TextIO
 from hil import __version__
 from hil.errors import InputError
 from hil.robot_files import load_robot
-from hil.run_folder import git_commit, read_json, write_json
+from hil.run_folder import git_commit, read_json, sha256, write_json
 from hil.studies.study import Case, Result, Study, StudyResult, case_key
 
 IDENTITY = ("study", "robot", "settings", "description_sha256", "model_sha256", "version")
@@ -123,8 +122,8 @@ def describe(study: Study) -> dict[str, Any]:
         "study": study.name,
         "robot": description.name,
         "settings": study.model_dump(mode="json"),
-        "description_sha256": _sha256(Path(description.file)),
-        "model_sha256": _sha256(description.model_path),
+        "description_sha256": sha256(description.file),
+        "model_sha256": sha256(description.model_path),
         "version": __version__,
         "git_commit": git_commit(),
         "started": datetime.now(UTC).isoformat(timespec="seconds"),
@@ -147,7 +146,3 @@ def _details(found: dict[str, Any], what: dict[str, Any], different: list[str]) 
     old, new = found["settings"], what["settings"]
     names = [f"settings.{name}" for name in new if new[name] != old.get(name)]
     return [name for name in different if name != "settings"] + names
-
-
-def _sha256(path: Path) -> str:
-    return sha256(path.read_bytes()).hexdigest()

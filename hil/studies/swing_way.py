@@ -1,10 +1,10 @@
 """Where the swing foot goes in a walk: from its hip, along and across the heading."""
 
-import mujoco
 import numpy as np
 
 from hil.description import RobotDescription
 from hil.interface import SIDES, Floats
+from hil.posed_model import PosedModel
 from hil.trace import Trace
 
 STEPS = 6
@@ -38,18 +38,15 @@ class _Legs:
     """Hips and ankles of a recorded tick, by forward kinematics."""
 
     def __init__(self, description: RobotDescription) -> None:
-        self._model = model = mujoco.MjModel.from_xml_path(str(description.model_path))
-        self._data = mujoco.MjData(model)
-        self._angles = model.jnt_qposadr[[model.joint(name).id for name in description.joint_names]]
+        self._body = PosedModel(description)
+        model = self._body.model
         self._hips = [model.joint(f"{side}_hip_pitch").id for side in SIDES]
         self._ankles = [model.joint(description.feet[side].ankle).id for side in SIDES]  # type: ignore[index]
 
     def swing_place(self, trace: Trace, tick: int, swing: int) -> tuple[float, float]:
         """Ankle from hip in the heading frame [m]."""
-        data = self._data
-        data.qpos[:3], data.qpos[3:7] = trace.base_position[tick], trace.base_orientation[tick]
-        data.qpos[self._angles] = trace.joint_position[tick]
-        mujoco.mj_kinematics(self._model, data)
+        self._body.place_tick(trace, tick)
+        data = self._body.data
         x, y, _ = (data.xanchor[self._ankles[swing]] - data.xanchor[self._hips[swing]]).tolist()
         cos, sin = np.cos(trace.heading[tick]), np.sin(trace.heading[tick])
         return float(cos * x + sin * y), float(cos * y - sin * x)

@@ -19,6 +19,9 @@ from hil.steering.limits import SteerLimits, steer_limits
 from hil.steering.steering import Steering
 from hil.view.feed import ViewFeed
 
+TOLD = 8
+"""The newest faults that the view is told of: a tick packs them, and a message has an end."""
+
 
 @dataclass(frozen=True, slots=True)
 class Attendance:
@@ -41,7 +44,7 @@ class Attendance:
         if self.feed is not None:
             self.feed.facts = lambda: {
                 "statistics": session.backend.statistics(),
-                "faults": [asdict(fault) for fault in loop.outcome.faults],
+                "faults": [asdict(fault) for fault in loop.outcome.faults[-TOLD:]],
             }
 
     def close(self) -> None:

@@ -1,4 +1,4 @@
-"""The run's end of the live view: a tick's bytes are copied into shared memory, nothing else."""
+"""The run's end of the live view: ticks into shared memory, facts and words over a socket."""
 
 import contextlib
 import json

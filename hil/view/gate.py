@@ -9,7 +9,7 @@ from collections.abc import AsyncIterator
 from contextlib import suppress
 from http.cookies import CookieError, SimpleCookie
 from pathlib import Path
-from urllib.parse import parse_qs, urlsplit
+from urllib.parse import SplitResult, parse_qs, urlsplit
 
 from websockets.asyncio.client import ClientConnection, unix_connect
 from websockets.asyncio.server import ServerConnection, serve
@@ -93,7 +93,9 @@ class Gate:
         del connection
         if not _from_here(request):
             return _refusal(403, "Forbidden", "this view answers to 127.0.0.1 and localhost only")
-        parts = urlsplit(request.path)
+        parts = _split(request.path)
+        if parts.fragment:
+            return _refusal(404, "Not Found", "a fragment is the browser's own concern")
         if parts.path in (PANELS, SCENE):
             return None
         token = parse_qs(parts.query).get("token")
@@ -117,7 +119,7 @@ class Gate:
         request = outer.request
         if request is None:
             return
-        steers, panels = self._may_steer(request), urlsplit(request.path).path == PANELS
+        steers, panels = self._may_steer(request), _split(request.path).path == PANELS
         if panels and not steers:
             await outer.close(TAKEN, "watching: the token is in the run's terminal")
             return
@@ -178,18 +180,18 @@ async def _close_with(inner: ClientConnection, outer: ServerConnection) -> None:
 
 def _from_here(request: Request) -> bool:
     """Whether Host, and Origin where there is one, are names of this machine's loopback."""
-    host = request.headers.get("Host", "")
-    origin = request.headers.get("Origin")
-    if _name(f"//{host}") not in LOCAL_NAMES:
+    hosts, origins = request.headers.get_all("Host"), request.headers.get_all("Origin")
+    if len(hosts) != 1 or _split(f"//{hosts[0]}").hostname not in LOCAL_NAMES:
         return False
-    return origin is None or urlsplit(origin).netloc == host
+    return all(_split(origin).netloc == hosts[0] for origin in origins)
 
 
-def _name(url: str) -> str | None:
+def _split(url: str) -> SplitResult:
+    """The parts of an address; empty ones where it is none."""
     try:
-        return urlsplit(url).hostname
+        return urlsplit(url)
     except ValueError:
-        return None
+        return urlsplit("")
 
 
 def _refusal(status: int, reason: str, text: str) -> Response:

@@ -9,6 +9,7 @@ import numpy as np
 from hil.body_motion import CORNERS
 from hil.description import RobotDescription
 from hil.interface import Floats
+from hil.robot_facts import body_weight
 
 AZIMUTH, ELEVATION = 140.0, -18.0
 """Of the camera at first [deg]."""
@@ -62,7 +63,7 @@ class Stage:
         geoms = [int(model.geom(foot.sole).id) for foot in (feet["left"], feet["right"])]
         self.soles = [Sole(geom, model.geom_size[geom].copy()) for geom in geoms]
         self.root = int(model.body(description.root).id)
-        self.weight = float(model.body_subtreemass[self.root] * -model.opt.gravity[2])
+        self.weight = body_weight(description)
         self.height = float(model.body(description.root).pos[2])
 
     def place(self, model: Any, data: Any, motion: Any) -> None:

@@ -61,3 +61,16 @@ def test_bent_knees_carry_the_trunk(human):
     fast = body.torques(tasks.ground(estimate, np.array([0, 0, G]), np.array([True, True])))
     assert abs(knee) > 15.0
     assert fast[description.joint_names.index("left_knee")] == pytest.approx(2 * knee, rel=0.15)
+
+
+def test_a_cautious_foot_takes_no_more_than_its_leg_carries(human):
+    description, body, tasks, estimate = human
+    knees = [description.joint_names.index(f"{side}_knee") for side in ("left", "right")]
+    limit = description.joints[knees[0]].torque_limit
+    hard = np.array([0.0, 2.0, 2.5 * G])  # leans on one leg
+    bearing = np.array([True, True])
+    task = tasks.ground(estimate, hard, bearing)
+    assert np.abs(body.torques(task)[knees]).max() > 1.3 * limit
+    task.cautious = True
+    assert np.abs(body.torques(task)[knees]).max() < limit
+    assert body.forces[..., 2].sum() > 70.4 * G

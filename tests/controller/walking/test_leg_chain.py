@@ -71,6 +71,18 @@ def test_the_foot_gets_where_it_should(model_of, changes):
         np.testing.assert_allclose(facing, foot, atol=2e-6)
 
 
+def test_a_leg_that_was_out_of_reach_bends_again_at_once(model_of):
+    """Corrections that went on growing while nothing could help left it straight."""
+    level = tuple(map(tuple, np.eye(3).tolist()))
+    model = model_of(*VARIANTS["offset"])
+    chain = LegChain(model, 0)
+    for _ in range(30):
+        straight = chain.solve([0.05, 0.0, -0.28], level)
+    assert straight[3] < 0.15
+    ankle, _ = reached(model, 0, chain.solve([0.0, 0.0, -0.2], level))
+    np.testing.assert_allclose(ankle, (0.0, 0.0, -0.2), atol=2e-6)
+
+
 @pytest.mark.parametrize("axes", itertools.permutations((0, 1, 2)))
 def test_angles_of_any_order_put_the_rotation_together_again(axes):
     angles = (0.4, -0.7, 1.1)

@@ -1,10 +1,13 @@
 """What cannot be driven is refused in one line, and nothing is written."""
 
+from pathlib import Path
+
 import pytest
 from foreign_bipeds import Foreign
 from typer.testing import CliRunner
 
 from hil.cli.main import app
+from hil.robot_files import load_robot
 
 LOOP = '<equality><connect body1="chest" body2="pelvis" anchor="0 0 0" name="bar"/></equality>'
 SLIDE = (
@@ -32,6 +35,7 @@ CASES = {
         "no legs found",
     ),
     "no XML": ("legs: 2", "is not XML"),
+    "no known encoding": ('<?xml version="1.0" encoding="elvish"?><mujoco/>', "is not XML"),
     "another XML": ("<sdf/>", "neither MJCF"),
     "does not compile": ("<mujoco><worldbody><body><joint/></body></worldbody></mujoco>",
                          "does not compile"),
@@ -71,3 +75,39 @@ def test_bad_options_are_refused(tmp_path, monkeypatch, options):
     result = CliRunner().invoke(app, ["new-robot", str(source), *options])
     assert result.exit_code == 2 and result.stderr.count("\n") == 1
     assert list(tmp_path.iterdir()) == [source]
+
+
+@pytest.mark.parametrize("name", ["123", "yes", "0x1", "null"])
+def test_a_name_that_yaml_takes_for_something_else_stays_a_name(tmp_path, name):
+    source = tmp_path / "theirs.xml"
+    source.write_text(Foreign().text())
+    command = ["new-robot", str(source), "--name", name, "--out", str(tmp_path / "out")]
+    assert CliRunner().invoke(app, command).exit_code == 0
+    assert load_robot(str(tmp_path / "out" / f"{name}.yaml")).name == name
+
+
+@pytest.mark.parametrize("where", ["theirs.xml", "theirs.xml/out"])
+def test_a_folder_that_cannot_be_made_is_one_line(tmp_path, where):
+    source = tmp_path / "theirs.xml"
+    source.write_text(Foreign().text())
+    command = ["new-robot", str(source), "--name", "mine", "--out", str(tmp_path / where)]
+    result = CliRunner().invoke(app, command)
+    assert result.exit_code == 2 and result.stderr.count("\n") == 1
+    assert source.is_file()
+
+
+def test_a_disk_that_is_full_leaves_no_half_robot(tmp_path, monkeypatch):
+    source = tmp_path / "theirs.xml"
+    source.write_text(Foreign().text())
+    write = Path.write_text
+
+    def full(path, text, **more):
+        if path.suffix == ".xml":
+            raise OSError(28, "No space left on device")
+        return write(path, text, **more)
+
+    monkeypatch.setattr(Path, "write_text", full)
+    command = ["new-robot", str(source), "--name", "mine", "--out", str(tmp_path / "out")]
+    result = CliRunner().invoke(app, command)
+    assert result.exit_code == 2 and "No space left" in result.stderr
+    assert list((tmp_path / "out").iterdir()) == []

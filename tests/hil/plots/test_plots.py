@@ -123,6 +123,24 @@ def test_a_wet_run_has_a_plot_of_its_water_and_a_dry_one_none(run, tmp_path):
     assert (tmp_path / "water.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.parametrize("field", ["joint_temperature", "joint_voltage"])
+def test_servos_of_which_one_kind_was_never_heard_are_drawn(run, field, tmp_path):
+    def edit(rows):
+        rows["frame"]["joint_temperature"] = 40.0
+        rows["frame"]["joint_voltage"] = 12.0
+        rows["frame"][field] = np.nan
+
+    draw_plot("servos", edited(run, edit), tmp_path / "servos.png", dpi=40)
+    assert (tmp_path / "servos.png").is_file()
+
+
+def test_a_recording_from_another_computer_finds_its_robot(short_walk, tmp_path):
+    recording = read_recording(short_walk)
+    meta = {**recording.meta, "description": "/opt/elsewhere/hil/robots/minibiped/minibiped.yaml"}
+    write_mcap(Recording(meta, recording.rows[:50], True), tmp_path / "session.mcap")
+    assert plotted_run(tmp_path).description.name == recording.meta["robot"]
+
+
 def test_a_run_that_never_walked_has_the_plots_that_need_no_walk(run):
     def edit(rows):
         rows["safety"]["walking"] = False

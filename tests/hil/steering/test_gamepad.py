@@ -1,3 +1,4 @@
+import math
 import os
 import struct
 import time
@@ -73,3 +74,31 @@ def test_a_pad_is_read_from_its_file_and_halts_when_it_is_pulled_out(tmp_path):
 def test_a_pad_that_is_not_there_is_one_line(tmp_path):
     with pytest.raises(InputError, match=r"--steer .*js7: cannot be opened: No such file"):
         Gamepad(tmp_path / "js7", LIMITS)
+
+
+def test_a_stick_that_trembles_turns_no_faster_than_one_that_rests(tmp_path):
+    """Every tremble is an event; what is asked for goes with time, not with events."""
+    device = tmp_path / "js0"
+    os.mkfifo(device)
+    said = []
+    pad = Gamepad(device, LIMITS)
+    with device.open("wb", buffering=0) as wire, pad.listening(said.append, said.append):
+        began = time.monotonic()
+        wire.write(button(LB))
+        for number in range(100):
+            wire.write(axis(3, 0.9 + 0.0005 * number))
+            time.sleep(0.002)
+        assert until(lambda: any(word.name == "turn" for word in said))
+        lasted = time.monotonic() - began
+    turned = -sum(word.values[0] for word in said if word.name == "turn")
+    assert 0.0 < turned < math.radians(25.0) * (lasted + 0.1)
+
+
+@pytest.mark.parametrize("name", ["/dev/zero", "/dev/null", "notes.txt"])
+def test_what_is_no_joystick_is_not_taken_for_one(name, tmp_path):
+    """An event device beside it speaks another language, in which buttons would be pressed."""
+    device = tmp_path / name
+    if not device.exists():
+        device.write_bytes(button(START))
+    with pytest.raises(InputError, match="is no joystick"):
+        Gamepad(device, LIMITS)

@@ -55,6 +55,14 @@ def test_a_heading_turns_steadily_and_not_at_once():
     assert operator.reference(30.0).heading == pytest.approx(math.radians(60))
 
 
+@pytest.mark.parametrize("heading", [1e308, -1e308])
+def test_a_heading_that_no_robot_reaches_is_still_a_number(heading):
+    operator, helm = make()
+    helm.post(Word("heading", (heading,)))
+    helm.act(operator, 1.0)
+    assert math.isfinite(operator.reference(600.0).heading)
+
+
 def test_turns_in_one_burst_add_up():
     operator, helm = make(turns=((1.0, 0.5),))
     for _ in range(3):

@@ -147,21 +147,24 @@ def test_the_views_stop_is_a_software_stop(tmp_path):
 
 
 LISTENING = """
-import fcntl, sys, termios, time
+import fcntl, os, sys, termios, time
 fcntl.ioctl(0, termios.TIOCSCTTY, 0)
 from pathlib import Path
 from hil.stop_listener import StopListener
 from hil.steering.steering import Steering
 
+def tell(line):
+    os.write(1, line.encode() + b"\\n")  # whole, from whichever thread
+
 class Helm:
     def post(self, word):
-        print(word.line(), flush=True)
+        tell(word.line())
 
 def post(name, *, now):
-    print(name, now, flush=True)
+    tell(f"{name} {now}")
 
 with StopListener(Path(sys.argv[1]), Steering(Helm())).listening(post):
-    print("ready", flush=True)
+    tell("ready")
     time.sleep(60)
 """
 
@@ -184,6 +187,29 @@ def test_arrows_of_the_terminal_steer_and_q_and_space_keep_their_meaning(tmp_pat
         "key q False", "key space True",
     ]  # fmt: skip
     assert "space: torque off now" in hint and "arrows: speed and turn" in hint
+    os.close(master)
+    os.close(slave)
+
+
+def test_what_was_typed_before_anybody_listened_stops_and_never_steers(tmp_path):
+    """A second Enter after the consent must not begin a walk."""
+    master, slave = pty.openpty()
+    os.write(master, b"\n\x1b[A\nq\n")
+    with subprocess.Popen(
+        [sys.executable, "-c", LISTENING, str(tmp_path)],
+        stdin=slave, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        start_new_session=True, text=True,
+    ) as process:  # fmt: skip
+        lines = iter(process.stdout.readline, "")
+        heard = ""
+        while "key q False" not in heard:
+            heard += next(lines)
+        os.write(master, b"0")
+        while "halt" not in heard:
+            heard += next(lines)
+        process.kill()
+        process.communicate()
+    assert "start" not in heard and "faster" not in heard
     os.close(master)
     os.close(slave)
 

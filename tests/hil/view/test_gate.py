@@ -3,6 +3,7 @@
 import urllib.error
 import urllib.request
 from pathlib import Path
+from socket import create_connection
 
 import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
@@ -12,6 +13,14 @@ from hil.robot_files import load_robot
 from hil.view.gate import Gate
 from hil.view.inner_server import WebPicture
 from hil.view.stage import stage_model
+
+UPGRADE = (
+    "Upgrade: websocket",
+    "Connection: Upgrade",
+    "Sec-WebSocket-Version: 13",
+    "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==",
+)
+"""A handshake with the nonce of RFC 6455, section 1.3."""
 
 
 @pytest.fixture(scope="module")
@@ -135,6 +144,24 @@ def test_a_page_from_elsewhere_gets_no_socket_whatever_cookie_it_rides_on(gate, 
     with pytest.raises(InvalidStatus) as refused:
         socket(gate, path, cookie(gate), origin="http://evil.example")
     assert refused.value.response.status_code == 403
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        ["GET //[x HTTP/1.1", "Host: 127.0.0.1"],
+        ["GET / HTTP/1.1", "Host: 127.0.0.1", "Host: 127.0.0.1"],
+        ["GET / HTTP/1.1", "Host: 127.0.0.1", "Origin: http://[x"],
+        ["GET /state#x HTTP/1.1", "Host: 127.0.0.1", *UPGRADE],
+    ],
+)
+def test_a_request_that_makes_no_sense_is_refused_without_a_traceback(gate, lines, caplog):
+    """The view's log is the run's terminal, where the software stop is asked for."""
+    with create_connection(("127.0.0.1", gate.port), 10) as wire:
+        wire.sendall("\r\n".join([*lines, "", ""]).encode())
+        status = int(wire.recv(4096).split()[1])
+    assert status in (403, 404)
+    assert [record for record in caplog.records if record.exc_info] == []
 
 
 def test_nothing_can_be_dropped(gate):
