@@ -58,6 +58,7 @@ class WebPicture(viewer_protocol.Viewer):  # type: ignore[misc]  # Studio is not
 
     def publish(self) -> None:
         """Send the scene alone, for those who only watch."""
+        self._follow()
         state = np.empty(mujoco.mj_stateSize(self.model, SIGNATURE))
         mujoco.mj_getState(self.model, self.data, state, SIGNATURE)
         io = imgui.GetIO()
@@ -80,6 +81,16 @@ class WebPicture(viewer_protocol.Viewer):  # type: ignore[misc]  # Studio is not
             inputs,
         )
         self._server.update_state(payload)
+
+    def _follow(self) -> None:
+        """Keep the camera's centre at the tracked body, for browsers that come later.
+
+        A browser moves its own tracking camera by what the body moves, from the centre it was given
+        first: without this that is where the robot stood when the view began. Those who are there
+        are not to take it for a change by the viewer, which would undo what their mouse did.
+        """
+        self.camera.lookat[:] = self.data.subtree_com[self.camera.trackbodyid]
+        self._client_camera._synced = client_camera._camera_fields(self.camera)
 
     def close(self) -> None:
         """Tell the browsers why, and stop serving."""
