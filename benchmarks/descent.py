@@ -5,6 +5,7 @@ same leg's reach by 10 to 60 % (not). Prints one line a robot and kind.
 """
 
 import argparse
+from dataclasses import replace
 from time import process_time
 
 import numpy as np
@@ -47,7 +48,8 @@ def main() -> None:
         description = load_robot(name)
         robot = RobotModel(description)
         leg = robot.leg_length
-        chain = leg_chain(robot, description, 0).to_last_anchor()
+        chain = leg_chain(robot, description, 0)
+        chain = replace(chain, tip=chain.anchors[-1:])  # one point, as the seed has it
         start = np.array(description.start_position)[chain.joints]
         tenth = options.targets // 10
         for kind, count in (

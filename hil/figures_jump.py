@@ -77,4 +77,4 @@ def draw_support(axes: Axes, vertices: Floats, coms: Floats) -> None:
     axes.set_ylim(low[0] - room, high[0] + room)
     axes.set(xlabel="left [m]", ylabel="forward [m]")
     axes.set_aspect("equal")
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, 1.18))
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), borderaxespad=0.2)

@@ -15,8 +15,8 @@ from hil.convex_hull import convex_hull
 from hil.description import RobotDescription
 from hil.figure_style import BODY, LEFT, LIMIT, RIGHT, STYLE
 from hil.figures_jump import draw_com_path, draw_force_arrows, draw_jump_strip, draw_support
-from hil.interface import Floats
-from hil.jump_report import JumpReview, Plan, flight_of
+from hil.interface import GRAVITY, SIDES, Floats
+from hil.jump_report import TOUCHING, JumpReview, Plan, flight_of
 from hil.trace import Trace
 
 ARROWS = 7
@@ -35,6 +35,7 @@ def draw_jump_run(
 ) -> None:
     """Write the picture of a jump to a file whose suffix says the format."""
     plan, flight = jump.plan(), flight_of(trace)
+    mass, gravity = meta["weight_n"] / GRAVITY, description.plant.gravity or GRAVITY
     moments = key_moments(trace, flight)
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(12, 10), layout="constrained")
@@ -42,7 +43,7 @@ def draw_jump_run(
         strip = figure.add_subplot(grid[0, :])
         _strip(strip, trace, description, moments, jump)
         if plan is not None:
-            _path(figure.add_subplot(grid[1, :2]), trace, plan, flight, meta["weight_n"])
+            _path(figure.add_subplot(grid[1, :2]), trace, plan, flight, mass, gravity)
         begin, end = (len(trace) - 1,) * 2 if flight is None else flight
         before = max(begin - 1, 0)
         name = "through the run" if flight is None else "until take-off"
@@ -50,7 +51,7 @@ def draw_jump_run(
         if flight is not None:
             landed = (min(end, len(trace) - 1), len(trace) - 1)
             _support(figure.add_subplot(grid[1, 3]), trace, jump, landed, "from touch-down on")
-        _load(figure.add_subplot(grid[2, :]), trace, flight, meta["weight_n"])
+        _load(figure.add_subplot(grid[2, :]), trace, flight, mass * gravity)
         head = f"{meta['robot']}, {meta['rung']}, {meta['rate_hz']} Hz, seed {meta['seed']}: "
         figure.suptitle(head + _outcome(trace, flight), x=0.01, ha="left", fontweight="bold")
         figure.savefig(path, dpi=110)
@@ -74,14 +75,23 @@ def key_moments(trace: Trace, flight: tuple[int, int] | None) -> dict[int, str]:
     return dict(sorted(moments.items()))
 
 
-def ground_force(trace: Trace, weight_n: float) -> Floats:
+def ground_force(trace: Trace, mass: float, gravity: float) -> Floats:
     """Force of the ground from the motion of the centre of mass [N], (T, 3): m·(a − g⃗).
 
-    The acceleration is the slope of its velocity over two ticks; air and water are left out.
+    The acceleration is the slope of its velocity over two ticks; air and water are left out. It is
+    0 where no foot bears anything: limbs that are thrown leave a ripple in that slope.
     """
-    force: Floats = np.gradient(trace.com_velocity, trace.time_s, axis=0) * (weight_n / 9.81)
-    force[:, 2] += weight_n
+    force: Floats = np.gradient(trace.com_velocity, trace.time_s, axis=0) * mass
+    force[:, 2] += mass * gravity
+    load = _loads(trace).sum(axis=1)
+    force[load < TOUCHING * load.mean()] = 0.0
     return force
+
+
+def _loads(trace: Trace) -> Floats:
+    """What each foot carries [N], (T, 2)."""
+    loads: Floats = trace.foot_force.sum(axis=2) + trace.toe_force
+    return loads
 
 
 def _outcome(trace: Trace, flight: tuple[int, int] | None) -> str:
@@ -118,7 +128,12 @@ def _strip(
 
 
 def _path(
-    axes: Axes, trace: Trace, plan: Plan, flight: tuple[int, int] | None, weight_n: float
+    axes: Axes,
+    trace: Trace,
+    plan: Plan,
+    flight: tuple[int, int] | None,
+    mass: float,
+    gravity: float,
 ) -> None:
     """Along the jump and up: what was planned and what became of it, with the ground's force."""
     way = (plan.landing_feet - plan.feet)[:2]
@@ -144,8 +159,9 @@ def _path(
     if flight is None:  # planned on a floor at 0, for a robot at 0
         planned = planned + (trace.com[0] - planned[0]) * (1.0, 1.0, 0.0)
     draw_com_path(axes, from_the_side(planned), from_the_side(trace.com[:until]))
-    forces = from_the_side(ground_force(trace, weight_n)[shown])
-    draw_force_arrows(axes, from_the_side(trace.com[shown]), forces, ARROW_LENGTH / weight_n)
+    forces = from_the_side(ground_force(trace, mass, gravity)[shown])
+    length_of_one = ARROW_LENGTH / (mass * gravity)
+    draw_force_arrows(axes, from_the_side(trace.com[shown]), forces, length_of_one)
     axes.margins(0.1, 0.2)
     axes.set(title="centre of mass, force of the ground", xlabel="along the jump [m]")
 
@@ -158,15 +174,12 @@ def _support(axes: Axes, trace: Trace, jump: JumpReview, span: tuple[int, int], 
     axes.set_title(f"support {name}", pad=22.0)
 
 
-def _load(axes: Axes, trace: Trace, flight: tuple[int, int] | None, weight_n: float) -> None:
+def _load(axes: Axes, trace: Trace, flight: tuple[int, int] | None, weight: float) -> None:
     """What each foot carries; grey while both are in the air."""
-    for foot, (side, colour) in enumerate((("left", LEFT), ("right", RIGHT))):
-        load = trace.foot_force[:, foot].sum(axis=1) + trace.toe_force[:, foot]
+    for load, side, colour in zip(_loads(trace).T, SIDES, (LEFT, RIGHT), strict=True):
         axes.plot(trace.time_s, load, color=colour, linewidth=1.0, label=side)
-    axes.axhline(weight_n, color=LIMIT, linestyle=":", linewidth=1.0)
-    axes.text(
-        trace.time_s[-1], weight_n, "weight ", fontsize=8, color=LIMIT, va="bottom", ha="right"
-    )
+    axes.axhline(weight, color=LIMIT, linestyle=":", linewidth=1.0)
+    axes.text(trace.time_s[-1], weight, "weight ", fontsize=8, color=LIMIT, va="bottom", ha="right")
     if flight is not None:
         begin, end = flight
         times = trace.time_s[[begin, end - 1]]

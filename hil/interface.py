@@ -20,6 +20,8 @@ Bools = NDArray[np.bool_]
 
 SIDES = ("left", "right")
 CORNERS = ("front_left", "front_right", "rear_left", "rear_right")
+GRAVITY = 9.81
+"""On the ground that robots stand on [m/s²]."""
 NEVER_NS = np.iinfo(np.int64).max
 """Age of a value that was never received."""
 
@@ -185,7 +187,7 @@ class SensorFrame:
             imu_present,
             np.array([1.0, 0.0, 0.0, 0.0]),
             np.zeros(3),
-            np.array([0.0, 0.0, 9.81]),
+            np.array([0.0, 0.0, GRAVITY]),
             NEVER_NS,
             False,
             np.zeros((2, 4)),

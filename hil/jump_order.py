@@ -2,6 +2,7 @@
 
 from pydantic import PositiveFloat
 
+from hil.interface import GRAVITY
 from hil.validation import Config
 
 
@@ -14,5 +15,7 @@ class JumpOrder(Config):
     """[s]"""
     push_depth: PositiveFloat
     """How far the centre of mass rises while the feet push [m]."""
-    gravity: PositiveFloat = 9.81
+    gravity: PositiveFloat = GRAVITY
     """[m/s²]"""
+    run_up: PositiveFloat | None = None
+    """Walk at this speed before the jump and after it [m/s]; none jumps from a stand."""

@@ -6,7 +6,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from hil.interface import Floats
+from hil.interface import GRAVITY, Floats
 from hil.trace import Trace
 
 STILL = 0.1
@@ -18,6 +18,7 @@ KEYS = (
     "apex_error_m",
     "takeoff_velocity_error_mps",
     "airtime_s",
+    "foot_clearance_m",
     "peak_joint_torque_ratio",
     "landed_standing",
 )
@@ -65,17 +66,6 @@ class Plan(Protocol):
         ...
 
 
-class Placed:
-    """The body of one tick of a trace, at rest: a `controller.robot_model.BodyState`."""
-
-    def __init__(self, trace: Trace, tick: int) -> None:
-        self.base_position = trace.base_position[tick]
-        self.base_orientation = trace.base_orientation[tick]
-        self.joint_position = trace.joint_position[tick]
-        self.base_linear_velocity = self.base_angular_velocity = np.zeros(3)
-        self.joint_velocity = np.zeros_like(self.joint_position)
-
-
 @dataclass(frozen=True, slots=True)
 class JumpReview:
     """What is known of a jump once it is over, beside its trace."""
@@ -86,6 +76,12 @@ class JumpReview:
     """Corners of the soles at a tick of a trace [m], (2, 4, 3)."""
     torque_ratio: Callable[[], float]
     """Largest torque asked for, as a share of its joint's limit."""
+    span: Callable[[], tuple[int, int | None]] = lambda: (0, None)
+    """Tick of the run with which the jump begins, and the one after its end, if a walk goes on."""
+
+    def of(self, trace: Trace) -> Trace:
+        """The jump's part of the trace of a run; nothing if the run ended before it."""
+        return trace.part(*self.span())
 
     def figures(self, trace: Trace, fell: bool) -> dict[str, Any]:
         """The report keys."""
@@ -94,7 +90,19 @@ class JumpReview:
             middle: Floats = self.soles(trace, tick).mean(axis=(0, 1))
             return middle
 
-        return jump_figures(trace, self.plan(), centre, self.torque_ratio(), fell)
+        jump = self.of(trace)
+        figures = jump_figures(jump, self.plan(), centre, self.torque_ratio(), fell)
+        figures["foot_clearance_m"] = self._clearance(jump)
+        return figures
+
+    def _clearance(self, jump: Trace) -> float:
+        """How high the lowest corner of both feet comes in the air [m]; 0 without a flight."""
+        flight = flight_of(jump)
+        if flight is None:
+            return 0.0
+        begin, end = flight
+        lowest = [self.soles(jump, k)[..., 2].min() for k in range(max(begin - 1, 0), end)]
+        return float(max(lowest) - lowest[0])
 
 
 def flight_of(trace: Trace) -> tuple[int, int] | None:
@@ -116,7 +124,7 @@ def jump_figures(
     torque_ratio: float,
     fell: bool,
 ) -> dict[str, Any]:
-    """Landing error at the end of the run, horizontal; apex, take-off and airtime of the flight.
+    """Landing error at the end of the trace, horizontal; apex, take-off and airtime of the flight.
 
     Errors are measured minus planned; the apex signed, the others as a distance. A jump that never
     left the ground has an airtime of 0, and no errors.
@@ -124,7 +132,7 @@ def jump_figures(
     figures: dict[str, Any] = dict.fromkeys(KEYS)
     figures["peak_joint_torque_ratio"] = torque_ratio
     figures["landed_standing"], figures["airtime_s"] = False, 0.0
-    flight = flight_of(trace)
+    flight = None if plan is None else flight_of(trace)
     if plan is None or flight is None:
         return figures
     begin, end = flight
@@ -137,7 +145,7 @@ def jump_figures(
     period = float(np.mean(np.diff(trace.time_s)))
     figures["airtime_s"] = (end - begin) * period
     speed = float(np.linalg.norm(trace.com_velocity[-1]))
-    still = speed < STILL * float(np.sqrt(9.81 * trace.com[0, 2]))
+    still = speed < STILL * float(np.sqrt(GRAVITY * trace.com[0, 2]))
     both = bool((trace.foot_force[-1].sum(axis=1) > 0.0).all())
     figures["landed_standing"] = both and still and not fell
     return figures

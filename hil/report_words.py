@@ -12,6 +12,7 @@ MAIN_FIGURES = (
     ("apex error", "apex_error_m", "m"),
     ("take-off velocity error", "takeoff_velocity_error_mps", "m/s"),
     ("airtime", "airtime_s", "s"),
+    ("feet clear the ground by", "foot_clearance_m", "m"),
     ("largest torque", "peak_joint_torque_ratio", "of its limit"),
     ("distance", "distance_m", "m"),
     ("mean speed", "mean_speed_mps", "m/s"),

@@ -2,16 +2,16 @@
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-import mujoco
 import numpy as np
 
 from hil.description import RobotDescription
 from hil.errors import DescriptionError
-from hil.interface import Floats
+from hil.interface import GRAVITY, Floats
 
-GRAVITY = 9.81
-"""On the ground that robots stand on [m/s²]."""
+if TYPE_CHECKING:  # the command line and the recorder start without the simulator
+    import mujoco
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,29 +47,36 @@ class RobotFacts:
 
 def robot_facts(description: RobotDescription) -> RobotFacts:
     """The facts of a described robot. Raises DescriptionError for a leg that is not found."""
-    model = mujoco.MjModel.from_xml_path(str(description.model_path))
+    import mujoco
+
+    model = _model(description)
     data = mujoco.MjData(model)
     mujoco.mj_kinematics(model, data)
     names = ("left_hip_pitch", "left_knee", description.feet["left"].ankle)
-    hip, knee, ankle = (_anchor(description, model, data, name) for name in names)
+    hip, knee, ankle = (_anchor(description, data, name) for name in names)
     length = float(np.linalg.norm(hip - knee) + np.linalg.norm(knee - ankle))
     return RobotFacts(_mass(description, model), length, float(-model.opt.gravity[2]))
 
 
 def body_weight(description: RobotDescription) -> float:
     """Weight of the robot's model [N]."""
-    model = mujoco.MjModel.from_xml_path(str(description.model_path))
-    return _mass(description, model) * GRAVITY
+    return _mass(description, _model(description)) * GRAVITY
 
 
-def _mass(description: RobotDescription, model: mujoco.MjModel) -> float:
+def _model(description: RobotDescription) -> "mujoco.MjModel":
+    import mujoco
+
+    return mujoco.MjModel.from_xml_path(str(description.model_path))
+
+
+def _mass(description: RobotDescription, model: "mujoco.MjModel") -> float:
     return float(model.body(description.root).subtreemass[0])
 
 
-def _anchor(
-    description: RobotDescription, model: mujoco.MjModel, data: mujoco.MjData, name: str
-) -> Floats:
-    joint = mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_JOINT, name)
-    if joint < 0:
-        raise DescriptionError(description.file, "joints", f"{name!r} is not in the model")
-    return np.asarray(data.xanchor[joint], dtype=np.float64)
+def _anchor(description: RobotDescription, data: "mujoco.MjData", name: str) -> Floats:
+    try:
+        anchor = data.joint(name).xanchor
+    except KeyError:
+        problem = f"{name!r} is not in the model"
+        raise DescriptionError(description.file, "joints", problem) from None
+    return np.asarray(anchor, dtype=np.float64)

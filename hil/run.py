@@ -126,10 +126,11 @@ class Books:
     def _draw(self, trace: Trace) -> None:
         description, jump = self._session.description, self._session.jump
         picture = self.folder / "picture.png"
-        if jump is None:
+        jumped = None if jump is None else jump.of(trace)
+        if jump is None or jumped is None or len(jumped) < 2:
             draw_run(trace, description, self._meta, picture)
         else:
-            draw_jump_run(trace, description, self._meta, jump, picture)
+            draw_jump_run(jumped, description, self._meta, jump, picture)
 
     def _close_recorder(self, outcome: Outcome) -> None:
         """A recording that failed is a fault of the run; it does not hide how the run ended."""

@@ -13,6 +13,7 @@ from hil.safety.decision import Action
 from hil.safety.severity import Event, Severity
 from hil.safety.silence import never_heard
 from hil.session import Session
+from hil.smoothstep import smoothstep
 from hil.start_plan import start_plan
 
 RANGE_MARGIN = 0.1
@@ -221,6 +222,6 @@ class PoseRamp:
         """The command of the next tick."""
         self._done = min(self._done + 1, self._ticks)
         s = max(0, self._done) / self._ticks
-        np.multiply(self._way, s * s * (3.0 - 2.0 * s), out=self._command.position)
+        np.multiply(self._way, smoothstep(s), out=self._command.position)
         self._command.position += self._present
         return self._command

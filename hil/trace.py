@@ -82,6 +82,10 @@ class Trace:
         w, x, y, z = self.base_orientation.T
         return np.unwrap(np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)))
 
+    def part(self, first: int, last: int | None) -> "Trace":
+        """The ticks from `first` on, before `last`."""
+        return Trace(**{item.name: getattr(self, item.name)[first:last] for item in fields(self)})
+
     @classmethod
     def from_ticks(cls, rows: np.ndarray[Any, np.dtype[np.void]]) -> "Trace":
         """The walking ticks among recorded ones (`hil.record_layout.tick_dtype`)."""

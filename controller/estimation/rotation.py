@@ -29,6 +29,13 @@ def from_matrix(rotation: Floats) -> Floats:
     return result
 
 
+def to_matrix(orientation: Floats) -> Floats:
+    """Rotation matrix of a quaternion, shape (3, 3)."""
+    result = np.empty(9)
+    mujoco.mju_quat2Mat(result, orientation)
+    return result.reshape(3, 3)
+
+
 def about_vertical(angle: float) -> Floats:
     """Quaternion of a rotation about z by an angle [rad]."""
     return np.array([math.cos(angle / 2), 0.0, 0.0, math.sin(angle / 2)])

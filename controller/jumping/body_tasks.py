@@ -9,11 +9,18 @@ from controller.jumping.whole_body import BodyTask, WholeBody
 from controller.walking.rotations import about_y, about_z, rotation_vectors
 from hil.description import RobotDescription
 from hil.interface import Bools, Estimate, Floats
+from hil.smoothstep import smoothstep
 
 TRUNK, POSTURE, FEET = 2.0, 3.0, 6.0
 """Natural frequencies of the trunk's attitude, the free joints and the feet, in √(g/L)."""
+CALM = 1.0
+"""And of the trunk's attitude while a landing is absorbed: a trunk that is turned upright at once
+puts the load on the heels, far behind the knees, which then carry less of the fall."""
 LIMP = 0.3
 """How strongly a joint that only follows, such as a toe, keeps its place."""
+GIVE = 0.5
+"""Share of the body's velocity of descent with which its feet meet the ground. Feet that meet it at
+rest have to be drawn up under a body that falls, and it lands on folded legs."""
 LEG_PARTS = ("hip", "knee", "ankle")
 JOINT_WEIGHT, LEG_WEIGHT, PLACE_WEIGHT = 10.0, 0.1, 0.1
 """How much the posture of the joints and of the root's attitude, of the legs, and the place of the
@@ -83,7 +90,7 @@ class BodyTasks:
         height = float(robot.com[2] - self.body.corners[..., 2].min())
         u = min(max((self.upright - height) / depth, 0.0), 1.0)
         rate = -6.0 * u * (1.0 - u) * float(robot.com_velocity[2]) / depth
-        self.set_lean(self.lean * u * u * (3.0 - 2.0 * u), self.lean * rate)
+        self.set_lean(self.lean * smoothstep(u), self.lean * rate)
 
     def _posture_task(self, estimate: Estimate) -> Floats:
         """Accelerations towards the posture; the attitude error of the root, in world axes."""
@@ -109,14 +116,14 @@ class BodyTasks:
     ) -> BodyTask:
         """Accelerate the centre of mass [m/s²], (3,), on the feet that bear, (2,).
 
-        A foot that does not is set down on the `floor`, at that height [m].
+        A foot that does not is set down on the `floor`, at that height [m], even out of a fall.
         """
         body, task = self.body, self.task
         errors = self._posture_task(estimate)
         mass = body.robot.mass
         task.force[:] = mass * acceleration
         task.force[2] += mass * body.gravity
-        omega = TRUNK * self.pace
+        omega = (CALM if task.cautious else TRUNK) * self.pace
         task.moment[:] = self._inertia * omega**2 * errors[0]
         task.moment -= 2.0 * omega * body.angular_momentum
         task.bearing[:] = bearing[:, None]
@@ -127,6 +134,8 @@ class BodyTasks:
         if not bearing.all():
             away = body.corners[..., 2].min(axis=1) - floor
             feet[~bearing, 5] -= rate**2 * away[~bearing] + body.gravity
+            if not bearing.any():
+                feet[:, 5] += 2.0 * rate * GIVE * float(body.robot.com_velocity[2])
         task.foot_slack = GROUND_SLACK * self._slack
         task.level_slack = LEVEL_GROUND
         return task

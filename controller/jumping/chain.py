@@ -1,12 +1,11 @@
 """A single chain of hinges from the root of a robot to one of its feet."""
 
-import math
-from dataclasses import dataclass, replace
-from typing import Self
+from dataclasses import dataclass
 
 import numpy as np
 
 from controller.robot_model import RobotModel
+from controller.walking.rotations import about_axis
 from hil.description import RobotDescription
 from hil.errors import DescriptionError
 from hil.interface import Floats, Ints
@@ -46,13 +45,9 @@ class JointChain:
         for hinge, angle in enumerate(angles.tolist()):
             anchors[hinge] = rotation @ self.anchors[hinge] + shift
             axes[hinge] = rotation @ self.axes[hinge]
-            rotation = rotation @ about(self.axes[hinge], angle)
+            rotation = rotation @ about_axis(self.axes[hinge].tolist(), angle)
             shift = anchors[hinge] - rotation @ self.anchors[hinge]
         return anchors, axes, self.tip @ rotation.T + shift
-
-    def to_last_anchor(self) -> Self:
-        """The same hinges, of which only the last anchor shall be somewhere: the seed's chain."""
-        return replace(self, tip=self.anchors[-1:])
 
     def points(self, angles: Floats) -> Floats:
         """The tip at angles [rad] of shape (k,), in root axes [m], shape (p, 3)."""
@@ -63,14 +58,6 @@ def cross_matrix(vector: Floats) -> Floats:
     """The matrix S with S·p = vector × p, shape (3, 3)."""
     x, y, z = vector.tolist()
     return np.array(((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))
-
-
-def about(axis: Floats, angle: float) -> Floats:
-    """Rotation by an angle [rad] about a unit vector, shape (3, 3) (Rodrigues)."""
-    cross = cross_matrix(axis)
-    versine = 1.0 - math.cos(angle)
-    rotation: Floats = np.eye(3) + math.sin(angle) * cross + versine * (cross @ cross)
-    return rotation
 
 
 def leg_chain(robot: RobotModel, description: RobotDescription, foot: int) -> JointChain:

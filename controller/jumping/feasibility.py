@@ -5,8 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from controller.jumping.jump_curves import JumpCurves
 from controller.jumping.path import JumpTarget
-from controller.jumping.rehearsal import JumpCurves, rehearse
+from controller.jumping.rehearsal import rehearse
 from hil.description import RobotDescription
 from hil.errors import InputError
 from hil.interface import Floats
@@ -32,7 +33,7 @@ class Demand:
     """The larger of both shares; above 1 it does not fit."""
 
     def __str__(self) -> str:
-        if abs(self.speed) / self.speed_limit >= self.ratio:
+        if abs(self.speed) / self.speed_limit >= min(self.ratio, 1.0):
             return f"{self.joint} needs {abs(self.speed):.1f} rad/s and has {self.speed_limit:.1f}"
         return (
             f"{self.joint} needs {abs(self.torque):.3g} N·m at {self.speed:.1f} rad/s and has "

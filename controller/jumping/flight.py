@@ -4,13 +4,12 @@ import math
 
 import numpy as np
 
+from controller.jumping.body_tasks import GIVE
 from controller.jumping.jump_plan import JumpPlan
 from controller.jumping.stage import Kit
 from controller.jumping.whole_body import BodyTask
 from hil.interface import Estimate, Floats
 
-SOFT = 0.5
-"""Share of the body's velocity of descent with which the feet give way at touch-down."""
 TUCK_SHARE = 0.4
 """Part of the flight after which the feet are drawn up highest."""
 OVERDUE = 1.5
@@ -58,9 +57,10 @@ class Flight:
     long past.
     """
 
-    def __init__(self, kit: Kit, plan: JumpPlan, tuck: float, down: float) -> None:
+    def __init__(self, kit: Kit, plan: JumpPlan, tuck: float, down: float, stance: Floats) -> None:
         """`tuck`: how high the feet are drawn up [m]; `down` height of the centre of mass above
-        the soles at touch-down [m].
+        the soles at touch-down [m]; `stance`: the ankles from the soles' centre as they shall
+        land [m], (2, 3), however they left the ground.
         """
         self._kit, self._plan, self._tuck = kit, plan, tuck
         self._elapsed = 0.0
@@ -69,8 +69,7 @@ class Flight:
         com, velocity = body.robot.com, body.robot.com_velocity
         ankles = np.array(body.robot.ankles)
         self._start = ankles
-        self._offsets = ankles - body.corners.mean(axis=(0, 1))
-        self._goals = self._offsets + plan.landing_feet
+        self._goals = stance + plan.landing_feet
         self._drop = ankles[:, 2] - com[2]
         self._down = float(plan.landing_feet[2]) + down
         self._airtime = plan.path.airtime
@@ -118,4 +117,4 @@ class Flight:
                 there[2] -= 0.5 * g * fall**2
                 end = velocity.copy()
                 end[2] -= g * fall
-                flight.step(self._goals[foot] - there, -SOFT * end, fall)
+                flight.step(self._goals[foot] - there, -GIVE * end, fall)

@@ -44,15 +44,19 @@ class JumpController:
         """`target` in axes of the robot's heading at the start."""
         self._target = target
         self.body = body = WholeBody(description, target.gravity)
-        self._settings = settings = JumpSettings.of(description)
+        self._settings = settings = JumpSettings()
         self.heights = jump_heights(body, description, settings)
         posture = np.array(description.start_position)
         self._tasks = BodyTasks(description, body, posture)
+        standing(body.robot, posture)
+        self._stance = np.array(body.robot.ankles) - body.robot.corner_positions.mean(axis=(0, 1))
+        """Ankles from the soles' centre in the start pose [m], (2, 3)."""
         self._tasks.upright, self._tasks.lean = self.heights.take_off, settings.lean
+        self._frame = np.eye(3)
+        """Heading of the jump to world, (3, 3)."""
         self._kit = Kit(self._tasks, 1.0 / rate_hz, target.gravity, target.push_depth)
         self._command = JointCommand.zeros(len(description.joints))
         self.stage: Stage | None = None
-        """What is being done; none before the first step."""
         """What is being done; none before the first step."""
         self.plan: JumpPlan | None = None
         """Known from the first step on."""
@@ -91,20 +95,27 @@ class JumpController:
         return command
 
     def _begin(self) -> Stage:
+        """Plan from where the feet are, and how fast the body goes."""
         body, target = self.body, self._target
         robot = body.robot
         heading = heading_of(robot.root_rotation)
         self._tasks.set_heading(heading)
+        self._frame = frame = about_z(heading)
+        forward = frame[:2, 0]
         feet = body.corners.mean(axis=(0, 1))
-        turn = about_z(heading)
-        x, y, z = (turn @ np.array(target.displacement)).tolist()
+        x, y, z = (frame @ np.array(target.displacement)).tolist()
         turned = JumpTarget((x, y, z), target.airtime, target.push_depth, target.gravity)
-        velocity = robot.com_velocity[:2].copy()
-        ahead = turn[:2, 0] * PRESSURE * robot.leg_length
-        self.plan = plan_jump(turned, robot.mass, self.heights, feet, velocity, ahead)
-        goal_velocity = np.append(velocity, 0.0)
+        ahead = forward * PRESSURE * robot.leg_length
         time = self._settings.windup_time / self._tasks.pace
-        return Crouch(self._kit, self.plan.crouch, goal_velocity, time)
+
+        def plan(speed: float) -> JumpPlan:
+            return plan_jump(turned, robot.mass, self.heights, feet, speed * forward, ahead)
+
+        speed = float(forward @ robot.com_velocity[:2])
+        still, moving = (float(forward @ (plan(v).crouch - robot.com)[:2]) for v in (0.0, speed))
+        speed *= carried_share(still, moving, speed, time)
+        self.plan = plan(speed)
+        return Crouch(self._kit, self.plan.crouch, np.append(speed * forward, 0.0), time)
 
     def _next(self, stage: Stage) -> Stage:
         plan, heights = self.plan, self.heights
@@ -115,11 +126,25 @@ class JumpController:
             return Push(self._kit, plan)
         if plan is not None and isinstance(stage, Push):
             tuck = TUCK * leg + STEP_TUCK * abs(self._target.displacement[2])
-            return Flight(self._kit, plan, tuck, heights.touch_down)
+            stance = self._stance @ self._frame.T
+            return Flight(self._kit, plan, tuck, heights.touch_down, stance)
         low = heights.resting
         self.status.steps = len(STAGES) - 1
         floor = 0.0 if plan is None else float(plan.landing_feet[2])
         return Stand(self._kit, low, heights.standing, RISE_TIME / self._tasks.pace, floor)
+
+
+def carried_share(still: float, moving: float, speed: float, time: float) -> float:
+    """Share of a `speed` v [m/s] that a body should still have at its crouch, 0 to 1.
+
+    The way with least effort to a place Δ ahead in the time T ends with the speed
+    1.5·Δ/T − v/2. The crouch lies Δ = `still` ahead for a push from rest and `moving` for one at
+    the whole speed [m], and between for a share s: s·v = 1.5·(still + s·(moving − still))/T − v/2.
+    """
+    if speed <= 0.0:
+        return 0.0
+    slope = speed - 1.5 * (moving - still) / time
+    return min(max((1.5 * still / time - 0.5 * speed) / slope, 0.0), 1.0)
 
 
 def jump_heights(body: WholeBody, description: RobotDescription, settings: JumpSettings) -> Heights:

@@ -8,6 +8,7 @@ from controller.jumping.stage import Kit
 from controller.jumping.support_polygon import SupportPolygon
 from controller.jumping.whole_body import BodyTask
 from hil.interface import Estimate, Floats
+from hil.smoothstep import smoothstep
 
 MOST_LIFT, MOST_SINK = 1.8, 0.7
 """Largest acceleration upwards and downwards, in g."""
@@ -99,8 +100,7 @@ class Stand:
         bearing = estimate.contact.copy()
         kit.tasks.task.cautious = True
         kit.tasks.bow(kit.depth)
-        share = min(max(self._elapsed / self._after - 1.0, 0.0), 1.0)
-        share *= share * (3.0 - 2.0 * share)
+        share = smoothstep(min(max(self._elapsed / self._after - 1.0, 0.0), 1.0))
         support = kit.tasks.support(bearing)
         ground = self._floor
         if bearing.any():

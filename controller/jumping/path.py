@@ -11,10 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hil.errors import InputError
-from hil.interface import Floats
-
-EARTH = 9.81
-"""[m/s²]"""
+from hil.interface import GRAVITY, Floats
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +28,7 @@ class JumpTarget:
     """From the last contact to the first [s]."""
     push_depth: float
     """How far the centre of mass rises while the feet push [m]."""
-    gravity: float = EARTH
+    gravity: float = GRAVITY
     """[m/s²]"""
 
     def __post_init__(self) -> None:
@@ -106,11 +103,6 @@ class JumpPath:
     def landing(self) -> Floats:
         """Centre of mass at touch-down [m]."""
         return self.position(self.duration)
-
-    @property
-    def landing_velocity(self) -> Floats:
-        """[m/s]"""
-        return self.velocity(self.duration)
 
     @property
     def apex_time(self) -> float:

@@ -1,8 +1,6 @@
 """Legs that follow the hip while both feet stay where they are."""
 
-import mujoco
-import numpy as np
-
+from controller.estimation.rotation import to_matrix
 from controller.jumping.ccd import solve_ccd
 from controller.jumping.chain import JointChain, leg_chain
 from controller.jumping.posture import Posture
@@ -26,7 +24,8 @@ class PinnedFeet:
         self._legs = [leg_chain(robot, description, foot) for foot in range(2)]
         self._tolerance = TOLERANCE * robot.leg_length
         self._places = [
-            leg.points(start.joint_position[leg.joints]) @ _rotation(start).T + start.base_position
+            leg.points(start.joint_position[leg.joints]) @ to_matrix(start.base_orientation).T
+            + start.base_position
             for leg in self._legs
         ]
 
@@ -34,7 +33,7 @@ class PinnedFeet:
         """The posture with its root moved by `travel` [m], or None if a foot would not stay."""
         base, joints = posture.base_position + travel, posture.joint_position.copy()
         for leg, places in zip(self._legs, self._places, strict=True):
-            targets = (places - base) @ _rotation(posture)
+            targets = (places - base) @ to_matrix(posture.base_orientation)
             begin = joints[leg.joints]
             found = solve_ccd(leg, begin, targets, tolerance=self._tolerance)
             if not found.converged:
@@ -52,10 +51,3 @@ def _at_limits(leg: JointChain, posture: Posture) -> list[int]:
     held = (angles - leg.lower < EDGE) | (leg.upper - angles < EDGE)
     found: list[int] = leg.joints[held].tolist()
     return found
-
-
-def _rotation(posture: Posture) -> Floats:
-    """Root to world, shape (3, 3)."""
-    flat = np.empty(9)
-    mujoco.mju_quat2Mat(flat, posture.base_orientation)
-    return flat.reshape(3, 3)

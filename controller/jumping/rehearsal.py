@@ -1,14 +1,13 @@
 """The windup and the push of a jump, computed before anything moves: what every joint would do."""
 
-from dataclasses import dataclass
-
 import mujoco
 import numpy as np
 
 from controller.estimation.sensors import empty_estimate
 from controller.jumping.flight import Flight
+from controller.jumping.hop_rehearsal import rehearse_hop
 from controller.jumping.jump_controller import JumpController
-from controller.jumping.jump_plan import JumpPlan
+from controller.jumping.jump_curves import RATE, JumpCurves
 from controller.jumping.path import JumpTarget
 from controller.jumping.posture import standing
 from controller.jumping.thrust import Push
@@ -17,37 +16,19 @@ from hil.description import RobotDescription
 from hil.errors import InputError
 from hil.interface import Estimate, Floats, Reference
 
-RATE = 300
-"""Steps a second."""
 LONGEST_S = 6.0
 """No windup and push take longer."""
-
-
-@dataclass(frozen=True, slots=True)
-class JumpCurves:
-    """Joint curves over K steps of 1/RATE, joints in the order of the description."""
-
-    position: Floats
-    """[rad], (K, n)."""
-    velocity: Floats
-    """[rad/s], (K, n)."""
-    torque: Floats
-    """[N·m], (K, n)."""
-    com: Floats
-    """Centre of mass [m], (K, 3)."""
-    push_begin: int
-    """Step at which the push begins."""
-    plan: JumpPlan
-    """Of a robot whose feet's centre is at x = y = 0, on a floor at z = 0."""
 
 
 def rehearse(description: RobotDescription, target: JumpTarget) -> JumpCurves:
     """Windup and push with the jump's own law on a body that does exactly what it is asked.
 
     No contacts, no friction, no motors: the accelerations that the law finds are integrated, the
-    feet held by it. So the curves are the plan's own, and cost no simulation. Raises InputError for
-    a jump that has no path, or that topples the body.
+    feet held by it. So the curves are the plan's own, and cost no simulation. Robots with servos
+    have `rehearse_hop`. Raises InputError for a jump that has no path, or that topples the body.
     """
+    if description.actuation == "servo":
+        return rehearse_hop(description, target)
     controller = JumpController(description, RATE, target)
     robot, reference = controller.body.robot, Reference()
     estimate = _standing_estimate(robot, description)

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from controller.jumping.chain import about
 from controller.jumping.posture import Posture
 from controller.robot_model import RobotModel
+from controller.walking.rotations import about_axis
 from hil.interface import Floats
 
 TOGETHER = 1e-9
@@ -54,7 +54,8 @@ class Skeleton:
         for bone in self.bones[1:]:
             rotation = np.eye(3)
             for axis, joint in zip(bone.axes, bone.joints, strict=True):
-                rotation = rotation @ about(axis, float(posture.joint_position[joint]))
+                angle = float(posture.joint_position[joint])
+                rotation = rotation @ about_axis(axis.tolist(), angle)
             turned.append(rotation)
         return turned
 

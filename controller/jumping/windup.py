@@ -79,11 +79,6 @@ class Windup:
     support: SupportPolygon
 
     @property
-    def crouch(self) -> Posture:
-        """The last posture."""
-        return self.frames[-1].posture
-
-    @property
     def com(self) -> Floats:
         """Centre of mass in the crouch [m], shape (3,)."""
         return self.frames[-1].com

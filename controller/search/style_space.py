@@ -49,7 +49,7 @@ class StyleSpace:
         self._others = [
             style.model_dump(mode="json")
             for style in config.chosen_styles
-            if (style.speed, style.water) != (speed, level)
+            if style.cell != (speed, level, 1.0)
         ]
         styles = GaitStyles(config)
         styles.choose(speed, level)

@@ -9,7 +9,7 @@ from hil.interface import Floats
 
 
 class GaitStyles:
-    """Key poses, and the swing foot's way before the take-over, for a speed and a liquid level.
+    """Key poses, and the swing foot's way before the take-over, for a speed and a liquid.
 
     A trajectory that a style leaves out is the standard controller's. Without styles the standard
     controller's own tables stand, and nothing is mixed.
@@ -31,11 +31,14 @@ class GaitStyles:
             self._paths = [self._path_table(style) for style in styles]
             self._has_path = any(table.any() for table in self._paths)
 
-    def choose(self, speed: float, level: float) -> None:
-        """Mix for a step at a commanded sagittal speed [m/s] in a liquid of a level [m]."""
+    def choose(self, speed: float, level: float, resistance: float = 1.0) -> None:
+        """Mix for a step at a sagittal speed [m/s] in a liquid of a level [m].
+
+        `resistance` is its drag over that of water.
+        """
         if self._combiner is None:
             return
-        parts = self._combiner.parts(speed, level)
+        parts = self._combiner.parts(speed, level, resistance)
         if parts == self._parts:
             return
         self._parts = parts

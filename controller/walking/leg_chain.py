@@ -8,7 +8,8 @@ import numpy as np
 
 from controller.robot_model import RobotModel
 from controller.walking.leg_kinematics import LegGeometry, Rows, Vector
-from hil.interface import SIDES, Floats
+from controller.walking.rotations import about_axis
+from hil.interface import SIDES
 
 ORDER = ("hip_yaw", "hip_roll", "hip_pitch", "knee", "ankle_pitch", "ankle_roll")
 """Of the angles that `solve` returns."""
@@ -48,7 +49,7 @@ class LegChain:
         ankle = model.ankles[leg]
         points = [centre, *(anchors[place] for place in chain), ankle]
         self._steps: list[Vector] = [tuple((b - a).tolist()) for a, b in pairwise(points)]
-        self._twists = [_Twist(axes[place]) for place in chain]
+        self._axes: list[list[float]] = axes[chain].tolist()
         hips = [ORDER[place].removeprefix("hip_") for place in chain[:3]]
         self._hip_axes = [_AXES[name] for name in hips]
         self._hip_places = [ORDER.index(f"hip_{name}") for name in hips]
@@ -67,8 +68,8 @@ class LegChain:
     def forward(self, angles: Sequence[float]) -> tuple[Vector, Rows]:
         """Ankle point from the hip centre [m] and foot rotation, in base axes."""
         (x, y, z), rows = self._steps[0], ONE
-        for place, twist, step in zip(self._places, self._twists, self._steps[1:], strict=True):
-            rows = product(rows, twist.rotation(angles[place]))
+        for place, axis, step in zip(self._places, self._axes, self._steps[1:], strict=True):
+            rows = product(rows, about_axis(axis, angles[place]))
             if step != NOWHERE:
                 dx, dy, dz = turned(rows, step)
                 x, y, z = x + dx, y + dy, z + dz
@@ -108,24 +109,6 @@ class LegChain:
         for place, angle in zip(self._hip_places, split(thigh, *self._hip_axes), strict=True):
             angles[place] = angle
         return angles
-
-
-class _Twist:
-    """Rotation about one axis a: cos·I + sin·[a]ₓ + (1 − cos)·a·aᵀ (Rodrigues)."""
-
-    def __init__(self, axis: Floats) -> None:
-        self._axis: list[float] = axis.tolist()
-
-    def rotation(self, angle: float) -> Rows:
-        """By an angle [rad]."""
-        x, y, z = self._axis
-        c, s = cos(angle), sin(angle)
-        d = 1.0 - c
-        return (
-            (c + d * x * x, d * x * y - s * z, d * x * z + s * y),
-            (d * x * y + s * z, c + d * y * y, d * y * z - s * x),
-            (d * x * z - s * y, d * y * z + s * x, c + d * z * z),
-        )
 
 
 def split(rotation: Rows, i: int, j: int, k: int) -> tuple[float, float, float]:

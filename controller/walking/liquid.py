@@ -16,7 +16,7 @@ class Liquid:
     density: float = WATER_DENSITY
     """[kg/m³]"""
     resistance: float = 1.0
-    """Drag over that of water at the same speed, ρμ/ρ_water."""
+    """Drag over that of water at the same speed, ρμ/ρ_water; 1 on land."""
 
     def expect(self, reference: Reference) -> None:
         """Take over what the operator says of this tick."""
@@ -24,10 +24,23 @@ class Liquid:
         if self.level > 0.0:
             self.density = reference.liquid_density
             self.resistance = self.density * reference.liquid_viscosity / WATER_DENSITY
+        else:
+            self.resistance = 1.0
+
+    @property
+    def excess(self) -> float:
+        """ρμ that the liquid has over water [kg/m³]; 0 on land and in thinner liquids."""
+        if self.level <= 0.0:
+            return 0.0
+        return max(self.resistance - 1.0, 0.0) * WATER_DENSITY
 
     def alike(self, speed: float) -> float:
-        """Speed that meets the same drag in water as a speed does here [m/s].
+        """Speed whose styles in water suit a speed here [m/s].
 
-        Drag goes with ρμ·V²: V·√(ρμ/ρ_water).
+        In a thinner liquid the one that meets the same drag, V·√(ρμ/ρ_water). A thicker one resists
+        the lifting of the foot, too: V/√(ρμ/ρ_water), so that it rises no faster than suits it.
         """
-        return speed if self.level <= 0.0 else speed * math.sqrt(self.resistance)
+        if self.level <= 0.0:
+            return speed
+        root = math.sqrt(self.resistance)
+        return speed * min(root, 1.0 / root)

@@ -1,6 +1,7 @@
 """Rotation matrices and rotation vectors, in batches."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -48,6 +49,21 @@ def about_z(angle: float) -> Floats:
     """Rotation by an angle [rad] about z, shape (3, 3)."""
     c, s = math.cos(angle), math.sin(angle)
     return np.array(((c, -s, 0.0), (s, c, 0.0), (0.0, 0.0, 1.0)))
+
+
+def about_axis(axis: Sequence[float], angle: float) -> list[list[float]]:
+    """Rows of the rotation by an angle [rad] about a unit vector a.
+
+    cos·I + sin·[a]ₓ + (1 − cos)·a·aᵀ (Rodrigues).
+    """
+    x, y, z = axis
+    c, s = math.cos(angle), math.sin(angle)
+    d = 1.0 - c
+    return [
+        [c + d * x * x, d * x * y - s * z, d * x * z + s * y],
+        [d * x * y + s * z, c + d * y * y, d * y * z - s * x],
+        [d * x * z - s * y, d * y * z + s * x, c + d * z * z],
+    ]
 
 
 _SKEW_AND_TRACE = np.zeros((9, 4))

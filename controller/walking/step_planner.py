@@ -48,6 +48,7 @@ class StepPlanner:
         self.gait = Gait(config.gait, robot.weight)
         self.heading_ramp = HeadingRamp(config.heading)
         self._command = CommandRamp(config.command, (speed, 0.0))
+        self._carried = config.drag_compensation
         self._placement = FootPlacement(config.placement, robot.leg_length, robot.gravity)
         self._take_over = TakeOver(config.take_over)
         self._crossing = LegCrossing(2.0 * sole_half_width + config.leg_crossing.clearance)
@@ -96,7 +97,8 @@ class StepPlanner:
         self.new_step = ended or self._first
         self._first = False
         if self.new_step:
-            self._styles.choose(self.liquid.alike(command[0]), self.liquid.level)
+            liquid = self.liquid
+            self._styles.choose(liquid.alike(command[0]), liquid.level, liquid.resistance)
             self._begin_step()
         self._latch_flat_foot(estimate.foot_force[gait.stance])
         self._observe_speed(command)
@@ -203,13 +205,15 @@ class StepPlanner:
         """How much further the swing foot is sent in water [m].
 
         For the speed that the body has: after a hit, or while the command runs ahead, drag is
-        that of the real speed, not of the wanted one.
+        that of the real speed, not of the wanted one. Where the leg's drag beyond that of water is
+        compensated, what holds the foot back is water.
         """
         liquid = self.liquid
         self._mean_speed += self._mean_share * (self.velocity[0] - self._mean_speed)
         if liquid.level <= 0.0:
             return 0.0
-        return self._placement.lead(self._mean_speed, liquid.level, liquid.resistance)
+        felt = min(liquid.resistance, 1.0) if self._carried else liquid.resistance
+        return self._placement.lead(self._mean_speed, liquid.level, felt)
 
     def _sidestep(self, start: Pair, landing: Pair, share: float) -> float:
         """Coronal offset that leads the swing foot round the stance foot [m]."""

@@ -127,6 +127,8 @@ class TorqueWalkingConfig(Config):
     """With which PD the stance hip carries the weights above it (`hip_gravity`)."""
     buoyancy_compensation: bool = True
     """Take what a liquid carries out of gravity compensation."""
+    drag_compensation: bool = True
+    """Carry the swing leg's drag in a thick liquid beyond that of water (`drag_compensation`)."""
     ankle_limit: AnkleLimitConfig
     ankle_guards: bool = False
     """Guard the ankles by the rules of the first author's stored code (`ankle_guards`)."""
@@ -163,8 +165,8 @@ class TorqueWalkingConfig(Config):
         """The simple controllers that the combiner mixes."""
         if not self.use_references:
             return self.styles
-        found = {(style.speed, style.water) for style in self.references}
-        kept = [style for style in self.styles if (style.speed, style.water) not in found]
+        found = {style.cell for style in self.references}
+        kept = [style for style in self.styles if style.cell not in found]
         return (*kept, *self.references)
 
     @model_validator(mode="after")
@@ -182,9 +184,9 @@ class TorqueWalkingConfig(Config):
                     f"styles: no such trajectory: {', '.join(strangers)}; valid: {', '.join(known)}"
                 )
         for name, styles in (("styles", self.styles), ("references", self.references)):
-            places = [(style.speed, style.water) for style in styles]
+            places = [style.cell for style in styles]
             if len(set(places)) < len(places):
-                raise ValueError(f"{name}: two for the same speed and water level")
+                raise ValueError(f"{name}: two for the same speed and water level (and resistance)")
         chosen = (self.gain_rate, self.implicit_gain_rate, *self.explicit_gain_rates)
         for rate_key in chosen:
             if rate_key is not None and rate_key not in self.gains:

@@ -13,6 +13,7 @@ from controller.selection import selection
 from controller.walking.ankle_guards import AnkleGuards
 from controller.walking.ankle_limit import ground_slope, limited, sole_levers
 from controller.walking.buoyancy import BuoyancyCompensation
+from controller.walking.drag_compensation import DragCompensation
 from controller.walking.gravity_compensation import GravityCompensation
 from controller.walking.heading_frame import Pair
 from controller.walking.hip_gravity import HipGravity
@@ -52,6 +53,7 @@ class TorqueLaw:
         self._trunk_rows = selection(self._trunk)
         self._gravity = GravityCompensation(robot, groups)
         self._buoyancy: BuoyancyCompensation | None = None
+        self._drag: DragCompensation | None = None
         weighed = config.hip_gravity == "always" or (config.hip_gravity == "implicit" and implicit)
         self._hip_gravity = HipGravity(robot, groups) if weighed else None
         self._virtual = VirtualForce(config.virtual_force, robot, groups, groups.index("back"))
@@ -78,6 +80,8 @@ class TorqueLaw:
         flat = {} if foot is None else {int(self._ankles[gait.stance]): foot}
         tracking.set_frames(plan.heading, flat)
         vectors = tracking.torques()
+        if plan.liquid.excess > 0.0 and self._config.drag_compensation:
+            vectors[: len(self.groups)] += self._carry_drag(plan)
         shares = stance_share(loads[gait.stance], loads[gait.swing])
         hips = (int(self._hips[gait.stance]), int(self._hips[gait.swing]))
         standing = loads[gait.stance] > 0.0
@@ -105,6 +109,12 @@ class TorqueLaw:
         if self._buoyancy is None:
             self._buoyancy = BuoyancyCompensation(self._robot, self.groups)
         return self._buoyancy.torques(plan.gait.stance, plan.liquid.level, plan.liquid.density)
+
+    def _carry_drag(self, plan: StepPlanner) -> Floats:
+        """What a thick liquid holds the swing leg back with; the stance hip balances it too."""
+        if self._drag is None:
+            self._drag = DragCompensation(self._robot, self.groups)
+        return self._drag.torques(plan.gait.swing, plan.liquid.level, plan.liquid.excess)
 
     def _balance_root(
         self,

@@ -4,9 +4,8 @@ import numpy as np
 
 from hil.after.smoothing import parabolas, smooth
 from hil.body_motion import BodyMotion
-from hil.interface import Floats
+from hil.interface import GRAVITY, Floats
 from hil.recording import Rows
-from hil.robot_facts import GRAVITY
 
 HANGING_SHARE = 0.1
 """Of the weight on the feet: with less, nothing presses them on a floor that could push back; a

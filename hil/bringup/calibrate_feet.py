@@ -10,8 +10,8 @@ from hil.bringup.deed import Deed
 from hil.bringup.joint_signs import middle_pose
 from hil.bringup.moment import Cells
 from hil.errors import InputError
-from hil.interface import CORNERS, SIDES, Floats
-from hil.robot_facts import GRAVITY, body_weight
+from hil.interface import CORNERS, GRAVITY, SIDES, Floats
+from hil.robot_facts import body_weight
 
 LISTEN_S = 0.7
 """How long one listens to cells on which something stands [s]."""

@@ -10,8 +10,7 @@ from hil.bringup.imu_mounting import LEAST_TILT, Mounting, MountingError, mounti
 from hil.bringup.joint_signs import middle_pose
 from hil.bringup.moment import Inertia
 from hil.errors import InputError
-from hil.interface import Floats
-from hil.robot_facts import GRAVITY
+from hil.interface import GRAVITY, Floats
 
 LISTEN_S = 2.0
 """How long one listens to a level torso: noise of 0.02 rad/s becomes a bias within 0.001 rad/s."""

@@ -48,7 +48,8 @@ def jumps(
     from hil.studies.jumps import JumpStudy
 
     request = resolved_request(robot, 0.0, overrides, backend=backend, rate_hz=rate, seed=seed)
-    depth = push_depth or default_push_depth(robot, tuple(overrides or ()))
+    if push_depth is None:
+        push_depth = default_push_depth(robot, tuple(overrides or ()))
     study = checked(
         JumpStudy,
         request=request,
@@ -56,6 +57,6 @@ def jumps(
         lateral=tuple(lateral or LATERAL)[: 1 if quick else None],
         heights=tuple(height or HEIGHTS)[: 1 if quick else None],
         airtimes=tuple(airtime or AIRTIMES)[: 1 if quick else None],
-        push_depth=depth,
+        push_depth=push_depth,
     )
     conduct(study, out, jobs, as_json=as_json)

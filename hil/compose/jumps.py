@@ -1,22 +1,31 @@
 """Jumps put together: what the plant needs for one, its controller, and what became of it."""
 
-import numpy as np
+from dataclasses import replace
 
 from controller.jumping.feasibility import require_feasible
+from controller.jumping.hop_rehearsal import HopCurves
+from controller.jumping.hop_settings import HopSettings
 from controller.jumping.jump_controller import JumpController
 from controller.jumping.jump_settings import JumpSettings
 from controller.jumping.path import JumpTarget
+from controller.jumping.posture import Posture
+from controller.jumping.running_jump import RunningJump
 from controller.jumping.servo_hop import ServoHop
 from controller.robot_model import RobotModel
+from controller.walking.torque_walker import TorqueWalker
+from drivers.dynamixel.servo_models import find_servo_model
 from hil.description import RobotDescription
 from hil.errors import InputError
 from hil.interface import Floats
 from hil.jump_order import JumpOrder
-from hil.jump_report import JumpReview, Placed
+from hil.jump_report import JumpReview
 from hil.request import RunRequest
 from hil.robot_files import load_robot
 from hil.trace import Trace
 
+Jumper = JumpController | ServoHop | RunningJump
+RUN_UP_S = 3.0
+"""How long a robot walks before it slows down for its jump [s]."""
 SUBSTEPS, PAD_STIFFNESS = 4, 16
 """Of the plant of a torque robot that jumps: feet that push a fast body leave a ground as soft and
 as coarsely stepped as the walking one (docs/jumping-results.md)."""
@@ -41,6 +50,8 @@ def jump_changes(request: RunRequest, order: JumpOrder) -> tuple[str, ...]:
     if description.actuation == "torque":
         changes += [f"plant.substeps={SUBSTEPS}", f"plant.pad_stiffness={PAD_STIFFNESS}"]
     if order.target[2] != 0.0:
+        if order.run_up is not None:
+            raise InputError("--run-up: a walk begins and ends on level ground: Z must be 0")
         box = ", ".join(f"{value:.4f}" for value in _platform(order, description))
         changes.append(f"plant.platform=[{box}]")
     return tuple(changes)
@@ -73,36 +84,58 @@ def _foot_reach(description: RobotDescription) -> tuple[float, float]:
     return min(x - half for x, half in reach), max(x + half for x, half in reach)
 
 
-def jump_controller(
-    order: JumpOrder, description: RobotDescription, rate_hz: int
-) -> JumpController | ServoHop:
+def jump_controller(order: JumpOrder, description: RobotDescription, rate_hz: int) -> Jumper:
     """The controller of a jump that the actuators can do; anything else raises InputError."""
+    if order.run_up is not None and description.actuation != "torque":
+        raise InputError("--run-up: a robot with servos hops from a stand")
     target = jump_target(order)
+    description = _at_supply(description)
     curves = require_feasible(description, target)
-    if description.actuation == "torque":
-        return JumpController(description, rate_hz, target)
-    if order.target[2] != 0.0:
-        raise InputError("--target: a robot with servos hops on the level: Z must be 0")
-    pace = float(np.sqrt(order.gravity / RobotModel(description).leg_length))
-    return ServoHop(description, rate_hz, curves, pace)
+    if not isinstance(curves, HopCurves):
+        jump = JumpController(description, rate_hz, target)
+        if order.run_up is None:
+            return jump
+        walk = TorqueWalker(description, rate_hz, speed=order.run_up)
+        walk_on = TorqueWalker(description, rate_hz)
+        return RunningJump(walk, jump, walk_on, rate_hz, RUN_UP_S)
+    return ServoHop(description, rate_hz, curves)
 
 
-def jump_review(description: RobotDescription, controller: JumpController | ServoHop) -> JumpReview:
+def _at_supply(description: RobotDescription) -> RobotDescription:
+    """With the stall torque and the no-load speed of its servos, at the robot's supply.
+
+    Both grow with the voltage, as those of a DC motor do. Servos without a name keep the limits of
+    the robot file.
+    """
+    joints = []
+    for joint in description.joints:
+        if joint.servo is not None and description.supply is not None:
+            servo = find_servo_model(joint.servo)
+            share = description.supply.voltage / servo.voltage
+            torque, speed = share * servo.stall_torque, share * servo.no_load_speed
+            joint = joint.model_copy(update={"torque_limit": torque, "velocity_limit": speed})
+        joints.append(joint)
+    return description.model_copy(update={"joints": tuple(joints)})
+
+
+def jump_review(description: RobotDescription, controller: Jumper) -> JumpReview:
     """What report and picture of a jump are made from, beside its trace."""
     robot = RobotModel(description)
 
     def soles(trace: Trace, tick: int) -> Floats:
-        robot.set_state(Placed(trace, tick))
+        base, turned = trace.base_position[tick], trace.base_orientation[tick]
+        robot.set_state(Posture(base, turned, trace.joint_position[tick]))
         return robot.corner_positions.copy()
 
-    return JumpReview(lambda: controller.plan, soles, lambda: controller.torque_ratio)
+    review = JumpReview(lambda: controller.plan, soles, lambda: controller.torque_ratio)
+    if isinstance(controller, RunningJump):
+        return replace(review, span=lambda: controller.span)
+    return review
 
 
 def default_push_depth(robot: str, overrides: tuple[str, ...]) -> float:
-    """How deep a robot crouches for its push if nobody says [m]: 0.32 of its leg, or what bent
-    knees leave a servo robot.
-    """
+    """How deep a robot crouches for its push if nobody says [m]."""
     description = load_robot(robot, overrides)
     leg = RobotModel(description).leg_length
-    deep = 0.32 if JumpSettings.of(description).lean > 0.0 else 0.14
-    return round(deep * leg, 3)
+    torque = description.actuation == "torque"
+    return round((JumpSettings() if torque else HopSettings()).push_depth * leg, 3)

@@ -9,8 +9,6 @@ from controller.estimation.hanging import HangingEstimator
 from controller.estimation.sensors import SensorEstimator
 from controller.estimation.truth import TruthEstimator
 from controller.holding import PoseHolder
-from controller.jumping.jump_controller import JumpController
-from controller.jumping.servo_hop import ServoHop
 from controller.walking.servo_walker import ServoWalker
 from controller.walking.torque_walker import TorqueWalker
 from drivers.calibration import RobotCalibration, load_calibration
@@ -19,7 +17,7 @@ from drivers.motor_constants import motor_parameters
 from drivers.robot_backend import BusBackend
 from hil.bringup.ladder import calibration_file, on_the_ground, require_hoisted_walk
 from hil.clock import MonotonicClock
-from hil.compose.jumps import jump_changes, jump_controller, jump_review
+from hil.compose.jumps import Jumper, jump_changes, jump_controller, jump_review
 from hil.description import RobotDescription
 from hil.errors import DescriptionError, InputError
 from hil.interface import Controller, Estimator, WalkStatus, World
@@ -73,7 +71,8 @@ def _on_mujoco(request: RunRequest, description: RobotDescription) -> Session:
         raise InputError("--realtime belongs to --backend bus: it paces a robot behind ports")
     rate_hz, seed = control_rate(request), request.seed
     velocity = (0.0, 0.0)
-    if description.start.moving and request.jump is None:
+    stands = request.jump is not None and request.jump.run_up is None
+    if description.start.moving and not stands:
         velocity = (_initial_speed(request, description), description.start.lateral_velocity)
     mapping, motors = None, None
     if description.actuation == "servo":
@@ -189,7 +188,7 @@ def _session(
     estimator = make_estimator(request, description, world, controller.status)
     hidden = hidden_values(description, request.seed).as_dict() if world is not None else {}
     meta = {"hidden": hidden}
-    if isinstance(controller, JumpController | ServoHop):
+    if isinstance(controller, Jumper):
         more["jump"] = jump_review(description, controller)
     if isinstance(backend, BusBackend) and not request.lockstep:
         more["watch"] = lambda: "guardian lost" if backend.guardian_lost() else None

@@ -73,8 +73,10 @@ class WindupOutcome:
     """|E_all| [m], shape (k,)."""
     balance_errors: Floats
     """[m], shape (k, 2)."""
-    margins: Floats
-    """[m], shape (k,)."""
+    least_margin: float
+    """Closest that the centre of mass came to the edge of the support [m]."""
+    depth: float
+    """How far the centre of mass went down [m]."""
     support: Floats
     """Vertices of the supporting polygon [m], shape (v, 2)."""
     planned: Floats
@@ -142,7 +144,8 @@ def _outcome(
         forces=np.array([frame.force for frame in frames]),
         errors=np.array([np.linalg.norm(frame.error) for frame in frames]),
         balance_errors=np.array([frame.balance_error for frame in frames]),
-        margins=np.array([frame.margin for frame in frames]),
+        least_margin=found.least_margin,
+        depth=found.depth,
         support=found.support.vertices,
         planned=path.position(np.linspace(0.0, path.duration, PATH_POINTS)),
         planned_force=path.force,

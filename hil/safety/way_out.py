@@ -5,6 +5,7 @@ import numpy as np
 from hil.description import RobotDescription
 from hil.interface import JointCommand
 from hil.safety.decision import Action
+from hil.smoothstep import smoothstep
 
 REST_S = 0.3
 """Time in the sitting pose before torque goes off."""
@@ -54,8 +55,7 @@ class WayDown:
             self._command.damping[:] = self._damping
         ticks = self._ticks[action]
         self._done = min(self._done + 1, ticks)
-        s = self._done / ticks
-        s *= s * (3.0 - 2.0 * s)
+        s = smoothstep(self._done / ticks)
         np.subtract(self._goal, self._start, out=self._command.position)
         self._command.position *= s
         self._command.position += self._start

@@ -12,8 +12,8 @@ from hil.compose.optimisations import gain_space
 from hil.joint_gains import GainSet
 from hil.studies.gain_walks import Side
 
-SMALL_SHARE, LARGE_SHARE = 0.8, 0.2
-"""The next rate starts from 0.8 of the smallest and 0.2 of the largest gains."""
+LARGE_SHARE = 0.2
+"""The next rate starts from so much of the largest gains, and for the rest from the smallest."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,6 +5,7 @@ constraints); its chapter 1 for characters of other weight and on the Moon.
 """
 
 from hil.description import RobotDescription
+from hil.interface import GRAVITY
 from hil.joint_gains import kind_of
 from hil.studies.study import Result
 from hil.studies.windup_case import WindupCase
@@ -18,13 +19,13 @@ SHARES = (1.0, 0.8, 0.6, 0.4)
 BENDING = ("knee", "hip_pitch", "ankle_pitch")
 WEAK = 0.4
 """Stiffness with which no bend is enough: the windups of table 3.3 go as deep as limits let."""
-MOON, MARS, EARTH = 1.62, 3.71, 9.81
+MOON, MARS = 1.62, 3.71
 CHARACTERS = (
-    ("Earth", EARTH, 1.0),
+    ("Earth", GRAVITY, 1.0),
     ("Mars", MARS, 1.0),
     ("Moon", MOON, 1.0),
-    ("double mass", EARTH, 2.0),
-    ("half mass", EARTH, 0.5),
+    ("double mass", GRAVITY, 2.0),
+    ("half mass", GRAVITY, 0.5),
 )
 
 Labelled = tuple[Result, WindupCase]

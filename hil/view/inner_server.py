@@ -89,8 +89,11 @@ class WebPicture(viewer_protocol.Viewer):  # type: ignore[misc]  # Studio is not
         first: without this that is where the robot stood when the view began. Those who are there
         are not to take it for a change by the viewer, which would undo what their mouse did.
         """
+        sync = self._client_camera
+        generation = sync.generation
         self.camera.lookat[:] = self.data.subtree_com[self.camera.trackbodyid]
-        self._client_camera._synced = client_camera._camera_fields(self.camera)
+        sync.update_generation(self.camera)
+        sync.generation = generation
 
     def close(self) -> None:
         """Tell the browsers why, and stop serving."""

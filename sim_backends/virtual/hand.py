@@ -11,6 +11,7 @@ import numpy as np
 
 from hil.errors import InputError, UnknownNameError
 from hil.interface import CORNERS, SIDES
+from hil.smoothstep import smoothstep
 from sim_backends.model import SUPPORT, named
 from sim_backends.virtual.robot import VirtualRobot
 from sim_backends.virtual.steering import Steering
@@ -139,7 +140,7 @@ class Hand:
 
         def step() -> None:
             x = min(1.0, (clock.now_ns() - begin_ns) / (MOVE_S * 1e9))
-            place(x * x * (3.0 - 2.0 * x))
+            place(smoothstep(x))
             if x < 1.0:
                 clock.schedule(clock.now_ns() + _STEP_NS, step)
 

@@ -56,7 +56,8 @@ def figures():
     yield low, rf"f_\text{{distance}} = {evaluation.DISTANCE_WEIGHT:.0f} \sum"
     yield low, rf"$\lambda = {cma_solver.POPULATION}$ samples"
     yield low, f"at most {('', 'one', 'two', 'three', 'four', 'five')[cma_solver.GENERATIONS]} gen"
-    yield low, f"${gain_algorithm.SMALL_SHARE}\\,S_{{\\min}} + {gain_algorithm.LARGE_SHARE}\\,S_"
+    share = gain_algorithm.LARGE_SHARE
+    yield low, f"${1.0 - share:g}\\,S_{{\\min}} + {share}\\,S_"
     yield low, rf"is ${gain_objective.GAINS_WEIGHT:.0f}\,\mu$"
     weights = gait_objective.WEIGHTINGS["3-6-1"].values()
     yield immersed, f"= ({', '.join(f'{weight:.0f}' for weight in weights)})$"

@@ -2,8 +2,6 @@
 
 from random import Random
 
-from cma import purecma
-
 from controller.walking.stabilizer.evaluation import ACCEPTED
 from controller.walking.stabilizer.problem import Problem, Solution
 
@@ -23,11 +21,15 @@ class CmaSolver:
     """
 
     def __init__(self, seed: int = 0) -> None:
+        # Here, for it brings SciPy's statistics and Matplotlib: twice the start-up of all the rest.
+        from cma import purecma
+
+        self._search = purecma.CMAES
         self._normal = Random(seed).normalvariate
 
     def solve(self, problem: Problem) -> Solution:
         """See `Solver`."""
-        search = purecma.CMAES([0.5] * 3, SIGMA, POPULATION, randn=self._normal)
+        search = self._search([0.5] * 3, SIGMA, POPULATION, randn=self._normal)
         for generation in range(1, GENERATIONS + 1):
             units = search.ask()
             values = []

@@ -1,6 +1,7 @@
 """Against a numerical optimum of another kind: damped least squares from many starts."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -17,7 +18,8 @@ STARTS = 12
 def seeds_chain(name):
     """Root to ankle, one point as the seed has it; start; a thousandth of the leg as tolerance."""
     robot = jumper(name)
-    chain = leg_chain(robot.model, robot.description, 0).to_last_anchor()
+    chain = leg_chain(robot.model, robot.description, 0)
+    chain = replace(chain, tip=chain.anchors[-1:])
     return chain, robot.angles[chain.joints], 1e-3 * robot.model.leg_length
 
 

@@ -46,7 +46,8 @@ def test_a_vector_becomes_a_style_that_walks_at_its_cell_alone():
     place = [one.name for one in space.variables].index("swing_drop[2]")
     vector[place] = 2.0
     styles = space.values(vector)["walking.styles"]
-    knee_deep = [one["speed"] for one in styles if one.get("water") == 0.5]
+    of_water = [one for one in styles if one.get("resistance", 1) == 1]
+    knee_deep = [one["speed"] for one in of_water if one.get("water") == 0.5]
     assert knee_deep == [0.3, 0.4, 0.7], "the robot's own, and one in place of that at 0.7 m/s"
     changed = load_robot("human", (f"walking.styles={styles!r}",))
     found = GaitStyles(torque_walking_config(changed))

@@ -51,6 +51,17 @@ def test_levels_may_have_different_speeds():
     assert combiner.parts(0.6, 0.25) == pytest.approx({0: 0.5, 1: 0.25, 2: 0.25})
 
 
+def test_then_over_resistance_and_a_thick_style_changes_nothing_in_water():
+    thick = [StyleConfig(speed=0.3, water=water, resistance=5.0) for water in (0.5, 0.75)]
+    combiner = Combiner([*thick, *styles((0.3, 0.0), (0.7, 0.0), (0.3, 0.5))], "square")
+    without = Combiner(styles((0.3, 0.0), (0.7, 0.0), (0.3, 0.5)), "square")
+    shifted = {index + 2: part for index, part in without.parts(0.5, 0.25).items()}
+    assert combiner.parts(0.5, 0.25) == shifted
+    assert combiner.parts(0.3, 0.75, 5.0) == {1: 1.0}
+    parts = combiner.parts(0.3, 0.625, 3.0)
+    assert parts == pytest.approx({4: 0.75, 0: 0.1875, 1: 0.0625})
+
+
 def walking(human, **changes):
     config = {**human.walking, **changes}
     return validate(TorqueWalkingConfig, config, "robot.yaml", "walking")

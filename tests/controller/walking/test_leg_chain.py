@@ -83,7 +83,7 @@ def test_a_leg_that_was_out_of_reach_bends_again_at_once(model_of):
     np.testing.assert_allclose(ankle, (0.0, 0.0, -0.2), atol=2e-6)
 
 
-@pytest.mark.parametrize("axes", itertools.permutations((0, 1, 2)))
+@pytest.mark.parametrize("axes", list(itertools.permutations((0, 1, 2))))
 def test_angles_of_any_order_put_the_rotation_together_again(axes):
     angles = (0.4, -0.7, 1.1)
     turn = np.eye(3)

@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from controller.walking.rotations import (
+    about_axis,
     about_x,
     about_y,
     about_z,
@@ -43,6 +44,14 @@ def test_single_axes(about, axis):
     expected = np.zeros(3)
     expected[axis] = 0.3
     assert about(0.3) == pytest.approx(matrix_of(expected))
+
+
+@given(component, component, component)
+def test_a_slanted_axis(x, y, z):
+    vector = np.array([x, y, z])
+    angle = float(np.linalg.norm(vector))
+    axis = vector / angle if angle > 0 else np.array([0.0, 0.0, 1.0])
+    assert np.array(about_axis(axis.tolist(), angle)) == pytest.approx(matrix_of(vector), abs=1e-9)
 
 
 def test_small_rotation_and_heading():

@@ -1,6 +1,7 @@
 """`stride study gait`: a small search end to end, what it leaves behind, bad input."""
 
 import csv
+import shutil
 
 import pytest
 import yaml
@@ -35,12 +36,22 @@ def test_bad_input_is_told_before_anything_runs(arguments, named, tmp_path):
     assert result.stderr.count("\n") == 1 and named in result.stderr
 
 
-def test_a_quick_search_leaves_values_that_a_robot_file_takes(tmp_path):
-    out = tmp_path / "out"
-    result = study(
+def search(out, jobs):
+    return study(
         "minibiped", "--backend", "mujoco", "--space", "gains", "--vary", "knee.kp", "--quick",
-        "--jobs", 1, "--out", out,
+        "--jobs", jobs, "--out", out,
     )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def searched(tmp_path_factory):
+    """A quick search, and its folder."""
+    out = tmp_path_factory.mktemp("search") / "out"
+    return search(out, 1), out
+
+
+def test_a_quick_search_leaves_values_that_a_robot_file_takes(searched, tmp_path):
+    result, out = searched
     assert result.exit_code == 0, result.stderr
     assert "energy" in result.stdout and "knee" in result.stdout
     with (out / "gait.csv").open(newline="") as file:
@@ -58,22 +69,19 @@ def test_a_quick_search_leaves_values_that_a_robot_file_takes(tmp_path):
     assert load_robot(str(file)).gains[300]["knee"][0] == best["gains"][300]["knee"][0]
 
 
-def test_a_search_cut_short_goes_on_and_finds_the_same(tmp_path):
-    def search(jobs):
-        result = study(
-            "minibiped", "--backend", "mujoco", "--space", "gains", "--vary", "knee.kp", "--quick",
-            "--jobs", jobs, "--out", tmp_path,
-        )  # fmt: skip
-        assert result.exit_code == 0, result.stderr
-        return (tmp_path / "best.yaml").read_text(), (tmp_path / "gait.csv").read_text()
-
-    found = search(1)
-    kept = (tmp_path / "cases.jsonl").read_bytes()
-    lines = kept.splitlines(keepends=True)
+def test_a_search_cut_short_goes_on_and_finds_the_same(searched, tmp_path):
+    _, whole = searched
+    out = shutil.copytree(whole, tmp_path / "out")
+    lines = (whole / "cases.jsonl").read_bytes().splitlines(keepends=True)
     torn = b"".join(lines[: len(lines) // 2]) + lines[len(lines) // 2][:20]
-    (tmp_path / "cases.jsonl").write_bytes(torn)
-    assert search(2) == found
-    assert len((tmp_path / "cases.jsonl").read_bytes().splitlines()) == len(lines)
+    (out / "cases.jsonl").write_bytes(torn)
+    for name in ("best.yaml", "gait.csv"):
+        (out / name).unlink()
+    result = search(out, 2)
+    assert result.exit_code == 0, result.stderr
+    for name in ("best.yaml", "gait.csv"):
+        assert (out / name).read_bytes() == (whole / name).read_bytes()
+    assert len((out / "cases.jsonl").read_bytes().splitlines()) == len(lines)
 
 
 def test_a_quick_search_for_a_style_leaves_an_entry_of_styles(tmp_path):

@@ -1,0 +1,63 @@
+"""Compensation of the drag that a thick liquid puts on the swing leg beyond that of water.
+
+Ours. Seed 003_73fecd8ec8927aad, section 5.3, leaves drag out of its force-field compensation,
+because it would take many small forces. Strips of the swing leg alone are few.
+"""
+
+import numpy as np
+
+from controller.robot_model import RobotModel
+from controller.walking.drag_strips import strips
+from controller.walking.joint_groups import JointGroups
+from hil.interface import Floats
+
+STRIPS_A_LEG = 12
+"""Strips along a leg."""
+
+
+class DragCompensation:
+    """τ_j = −Σ (p_k − p_j) × F_k over the strips k of the swing leg beyond its joint j.
+
+    F_k = −½ρμ·C_d·w_k·√Σ(A_i·u_i)²·v with C_d = 1: the strip's centre p_k moves at v, which is u
+    in its geom's axes, and shows the areas A_i; w_k is the share of its height under the level
+    that the robot is told to expect. `torques` takes the ρμ of which this is to be the drag: that
+    of the liquid less that of water leaves the leg with water's, for which the poses are made.
+    """
+
+    def __init__(self, robot: RobotModel, groups: JointGroups) -> None:
+        model, data = robot.model, robot.data
+        self._anchors: Floats = data.xanchor
+        self._joints = groups.anchor_joint
+        self._places, self._axes, self._motion = data.geom_xpos, data.geom_xmat, data.cvel
+        self._com: Floats = data.subtree_com[model.body_rootid[robot.root_body]]
+        length = robot.leg_length / STRIPS_A_LEG
+        self._half = 0.5 * length
+        moved = groups.moves(model.geom_bodyid)
+        descends = groups.descends()
+        self._legs = []
+        for hip in groups.legs("hip"):
+            geoms = np.flatnonzero(moved[:, hip])
+            cut = [strips(model, int(geom), length) for geom in geoms]
+            of = np.repeat(geoms, [len(points) for points, _ in cut])
+            beyond = moved[of].T & descends[:, hip, None]
+            points, areas = (np.concatenate(parts) for parts in zip(*cut, strict=True))
+            self._legs.append((of, model.geom_bodyid[of], points, areas, beyond.astype(float)))
+
+    def torques(self, swing: int, level: float, thickness: float) -> Floats:
+        """World torque vectors [N·m], shape (groups, 3); zero but on the swing leg.
+
+        `level` is that of the liquid above the floor [m], `thickness` its ρμ [kg/m³].
+        """
+        geoms, bodies, points, areas, beyond = self._legs[swing]
+        axes = self._axes.take(geoms, axis=0).reshape(-1, 3, 3)
+        places = self._places.take(geoms, axis=0) + np.matvec(axes, points)
+        motion = self._motion.take(bodies, axis=0)
+        velocity = motion[:, 3:] + np.cross(motion[:, :3], places - self._com)
+        shown = areas * np.vecmat(velocity, axes)
+        wet = np.clip((level - places[:, 2]) / (2.0 * self._half) + 0.5, 0.0, 1.0)
+        factor = 0.5 * thickness * wet * np.sqrt(np.vecdot(shown, shown))
+        against = factor[:, None] * velocity
+        moment = beyond @ np.cross(places, against)
+        moment -= np.cross(self._anchors[self._joints], beyond @ against)
+        result: Floats = moment
+        return result
