@@ -1,4 +1,4 @@
-"""Compensation of the drag that a thick liquid puts on the swing leg beyond that of water.
+"""Compensation of drag on the swing leg: sideways all of it, ahead what exceeds that of water.
 
 Ours. Seed 003_73fecd8ec8927aad, section 5.3, leaves drag out of its force-field compensation,
 because it would take many small forces. Strips of the swing leg alone are few.
@@ -9,6 +9,7 @@ import numpy as np
 from controller.robot_model import RobotModel
 from controller.walking.drag_strips import strips
 from controller.walking.joint_groups import JointGroups
+from controller.walking.liquid import Liquid
 from hil.interface import Floats
 
 STRIPS_A_LEG = 12
@@ -20,8 +21,9 @@ class DragCompensation:
 
     F_k = −½ρμ·C_d·w_k·√Σ(A_i·u_i)²·v with C_d = 1: the strip's centre p_k moves at v, which is u
     in its geom's axes, and shows the areas A_i; w_k is the share of its height under the level
-    that the robot is told to expect. `torques` takes the ρμ of which this is to be the drag: that
-    of the liquid less that of water leaves the leg with water's, for which the poses are made.
+    that the robot is told to expect. Along the walk ρμ is that of the liquid less that of water,
+    which leaves the leg with water's drag, for which the poses are made; across it is all of ρμ: no
+    pose and no lead accounts for a foot that lags sideways.
     """
 
     def __init__(self, robot: RobotModel, groups: JointGroups) -> None:
@@ -43,10 +45,10 @@ class DragCompensation:
             points, areas = (np.concatenate(parts) for parts in zip(*cut, strict=True))
             self._legs.append((of, model.geom_bodyid[of], points, areas, beyond.astype(float)))
 
-    def torques(self, swing: int, level: float, thickness: float) -> Floats:
+    def torques(self, swing: int, liquid: Liquid, across: Floats) -> Floats:
         """World torque vectors [N·m], shape (groups, 3); zero but on the swing leg.
 
-        `level` is that of the liquid above the floor [m], `thickness` its ρμ [kg/m³].
+        `liquid` is what the robot expects, `across` the coronal direction, (3,).
         """
         geoms, bodies, points, areas, beyond = self._legs[swing]
         axes = self._axes.take(geoms, axis=0).reshape(-1, 3, 3)
@@ -54,9 +56,10 @@ class DragCompensation:
         motion = self._motion.take(bodies, axis=0)
         velocity = motion[:, 3:] + np.cross(motion[:, :3], places - self._com)
         shown = areas * np.vecmat(velocity, axes)
-        wet = np.clip((level - places[:, 2]) / (2.0 * self._half) + 0.5, 0.0, 1.0)
-        factor = 0.5 * thickness * wet * np.sqrt(np.vecdot(shown, shown))
-        against = factor[:, None] * velocity
+        wet = np.clip((liquid.level - places[:, 2]) / (2.0 * self._half) + 0.5, 0.0, 1.0)
+        factor = 0.5 * wet * np.sqrt(np.vecdot(shown, shown))
+        sideways = (liquid.thickness - liquid.excess) * (velocity @ across)
+        against = factor[:, None] * (liquid.excess * velocity + np.outer(sideways, across))
         moment = beyond @ np.cross(places, against)
         moment -= np.cross(self._anchors[self._joints], beyond @ against)
         result: Floats = moment

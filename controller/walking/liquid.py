@@ -28,6 +28,11 @@ class Liquid:
             self.resistance = 1.0
 
     @property
+    def thickness(self) -> float:
+        """Its ρμ [kg/m³]."""
+        return self.resistance * WATER_DENSITY
+
+    @property
     def excess(self) -> float:
         """ρμ that the liquid has over water [kg/m³]; 0 on land and in thinner liquids."""
         if self.level <= 0.0:

@@ -128,7 +128,7 @@ class TorqueWalkingConfig(Config):
     buoyancy_compensation: bool = True
     """Take what a liquid carries out of gravity compensation."""
     drag_compensation: bool = True
-    """Carry the swing leg's drag in a thick liquid beyond that of water (`drag_compensation`)."""
+    """Carry the swing leg's drag: sideways, and in thick liquids (`drag_compensation`)."""
     ankle_limit: AnkleLimitConfig
     ankle_guards: bool = False
     """Guard the ankles by the rules of the first author's stored code (`ankle_guards`)."""

@@ -80,7 +80,7 @@ class TorqueLaw:
         flat = {} if foot is None else {int(self._ankles[gait.stance]): foot}
         tracking.set_frames(plan.heading, flat)
         vectors = tracking.torques()
-        if plan.liquid.excess > 0.0 and self._config.drag_compensation:
+        if plan.liquid.level > 0.0 and self._config.drag_compensation:
             vectors[: len(self.groups)] += self._carry_drag(plan)
         shares = stance_share(loads[gait.stance], loads[gait.swing])
         hips = (int(self._hips[gait.stance]), int(self._hips[gait.swing]))
@@ -111,10 +111,10 @@ class TorqueLaw:
         return self._buoyancy.torques(plan.gait.stance, plan.liquid.level, plan.liquid.density)
 
     def _carry_drag(self, plan: StepPlanner) -> Floats:
-        """What a thick liquid holds the swing leg back with; the stance hip balances it too."""
+        """What holds the swing leg back in the liquid; the stance hip balances it too."""
         if self._drag is None:
             self._drag = DragCompensation(self._robot, self.groups)
-        return self._drag.torques(plan.gait.swing, plan.liquid.level, plan.liquid.excess)
+        return self._drag.torques(plan.gait.swing, plan.liquid, plan.heading[:, 1])
 
     def _balance_root(
         self,

@@ -36,7 +36,8 @@ def draw_water(title: str, rows: list[Result], path: Path) -> None:
             right.plot(x, y, marker="o", color=shade, label=f"{speed:g} m/s")
         right.set(xlabel="level above the floor [m]", ylabel="lift of the sole [m]")
         right.set_ylim(bottom=0.0)
-        right.legend(loc="upper left")
+        if speeds:
+            right.legend(loc="upper left")
         figure.suptitle(title, x=0.01, ha="left", fontweight="bold")
         figure.savefig(path, dpi=90)
 

@@ -16,21 +16,23 @@ from hil.studies.walks import finite, mean_velocity, walk
 
 LEVELS = (0.0, 0.2688, 0.5376, 0.8065, 1.0753)
 """0 … 1 m on the 0.93 m leg of the seed's character, as parts of the leg."""
-SPEED_FROUDE = (0.099, 0.1320, 0.1650, 0.1980, 0.2310)
-"""0.3 … 0.7 m/s of the same as v/√(gL)."""
+SPEED_FROUDE = (0.0660, 0.099, 0.1320, 0.1650, 0.1980, 0.2310)
+"""0.2 … 0.7 m/s of the same as v/√(gL)."""
 
 
 class WaterCase(Case):
     """A walk at constant speed in a liquid that stays as it is."""
 
     speed: float
-    """[m/s]"""
+    """Sagittal [m/s]."""
     level: NonNegativeFloat
     """[m]"""
     density: PositiveFloat
     """[kg/m³]"""
     viscosity: PositiveFloat
     """Factor on the drag."""
+    lateral: float = 0.0
+    """Coronal, left positive [m/s]."""
 
 
 class WaterStudy(Study):
@@ -38,6 +40,7 @@ class WaterStudy(Study):
 
     name: ClassVar[str] = "water"
     speeds: tuple[float, ...] = Field(min_length=1)
+    laterals: tuple[float, ...] = Field(min_length=1)
     levels: tuple[NonNegativeFloat, ...] = Field(min_length=1)
     densities: tuple[PositiveFloat, ...] = Field(min_length=1)
     viscosities: tuple[PositiveFloat, ...] = Field(min_length=1)
@@ -48,17 +51,24 @@ class WaterStudy(Study):
         request = self.request.model_copy(update={"duration_s": self.duration_s})
         cases = [
             WaterCase(
-                request=request, speed=speed, level=level, density=density, viscosity=viscosity
+                request=request,
+                speed=speed,
+                lateral=lateral,
+                level=level,
+                density=density,
+                viscosity=viscosity,
             )
             for density in self.densities
             for viscosity in self.viscosities
             for level in self.levels
+            for lateral in self.laterals
             for speed in self.speeds
         ]
         rows = [
             EMPTY
             | {
                 "target_mps": case.speed,
+                "lateral_target_mps": case.lateral,
                 "level_m": case.level,
                 "density_kgpm3": case.density,
                 "viscosity": case.viscosity,
@@ -70,7 +80,10 @@ class WaterStudy(Study):
         return StudyResult(rows, [self._table(rows)], draw)
 
     def _table(self, rows: list[Result]) -> Table:
-        heads = ("level", "density", "viscosity", "speed", "reached", "error %", "lift m", "")
+        heads = (
+            "level", "density", "viscosity", "speed", "reached", "error %", "sideways", "reached",
+            "lift m", "",
+        )  # fmt: skip
         lines = [
             (
                 f"{row['level_m']:.2f}",
@@ -79,6 +92,8 @@ class WaterStudy(Study):
                 f"{row['target_mps']:.2f}",
                 number(row["speed_mps"], ".3f"),
                 number(row["error_pct"], ".1f"),
+                f"{row['lateral_target_mps']:.2f}",
+                number(row["lateral_mps"], ".3f"),
                 number(row["lift_m"], ".2f"),
                 outcome(row),
             )
@@ -90,11 +105,13 @@ class WaterStudy(Study):
 EMPTY: Result = dict.fromkeys(
     (
         "target_mps",
+        "lateral_target_mps",
         "level_m",
         "density_kgpm3",
         "viscosity",
         "speed_mps",
         "error_pct",
+        "lateral_mps",
         "lift_m",
         "steps",
         "real_time_factor",
@@ -108,7 +125,7 @@ EMPTY: Result = dict.fromkeys(
 
 def reach_speed(case: WaterCase) -> Result:
     """Reached speed, lift of the feet, and whether the walk came to its end."""
-    asked = {"speed": case.speed}
+    asked = {"speed": case.speed, "lateral": case.lateral}
     if case.level > 0.0:
         asked |= {"water": case.level, "density": case.density, "viscosity": case.viscosity}
     schedules = case.request.schedules.model_copy(
@@ -116,7 +133,8 @@ def reach_speed(case: WaterCase) -> Result:
     )
     walked = walk(case.request.model_copy(update={"schedules": schedules}))
     ended = walked.stopped_s is None
-    speed = finite(mean_velocity(walked.trace)[0]) if ended else None
+    reached = mean_velocity(walked.trace) if ended else (float("nan"), float("nan"))
+    speed, lateral = finite(reached[0]), finite(reached[1])
     error = None
     if speed is not None and case.speed != 0.0:
         error = 100.0 * (speed - case.speed) / abs(case.speed)
@@ -124,6 +142,7 @@ def reach_speed(case: WaterCase) -> Result:
     return {
         "speed_mps": speed,
         "error_pct": error,
+        "lateral_mps": lateral,
         "lift_m": foot_lift(description, walked.trace) if ended else None,
         "steps": walked.report["steps"],
         "real_time_factor": walked.report["real_time_factor"],
