@@ -16,7 +16,7 @@ walk: $(VENV)/.walk
 	$(BIN)/stride walk $(ROBOT) --duration 20
 
 test: $(VENV)/.dev
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n 2 --dist loadgroup
 
 lint: $(VENV)/.dev
 	$(BIN)/ruff format --check .

@@ -47,7 +47,7 @@ class StepPlanner:
         self._dt = dt
         self.gait = Gait(config.gait, robot.weight)
         self.heading_ramp = HeadingRamp(config.heading)
-        self._command = CommandRamp(config.command, (speed, 0.0))
+        self._ramp = CommandRamp(config.command, (speed, 0.0))
         self._carried = config.drag_compensation
         self._placement = FootPlacement(config.placement, robot.leg_length, robot.gravity)
         self._take_over = TakeOver(config.take_over)
@@ -76,6 +76,8 @@ class StepPlanner:
         """Heading frame of the stance foot, from the moment when it lies flat."""
         self.velocity: Pair = (0.0, 0.0)
         """Of the centre of mass in the heading frame [m/s]."""
+        self.command: Pair = (0.0, 0.0)
+        """Commanded speed, as fast as it may change [m/s]."""
         self.wanted: Pair = (0.0, 0.0)
         """Speed for the virtual force: commanded plus learned deviation [m/s]."""
         self.liquid = Liquid()
@@ -83,11 +85,18 @@ class StepPlanner:
         self.foot_target = [0.0, 0.0, 0.0]
         """World target of the swing ankle [m]; the height is left to the caller."""
 
+    @property
+    def drags(self) -> bool:
+        """The liquid holds the swing leg back in a way that the poses do not allow for."""
+        liquid = self.liquid
+        return liquid.level > 0.0 and (liquid.excess > 0.0 or self.command[1] != 0.0)
+
     def update(self, estimate: Estimate, loads: Pair, reference: Reference) -> None:
         """Move the plan on by one tick; `loads` are the vertical forces on the feet [N]."""
         gait = self.gait
         self.liquid.expect(reference)
-        command = self._command.update(self._dt, reference.speed, reference.lateral)
+        command = self._ramp.update(self._dt, reference.speed, reference.lateral)
+        self.command = command
         stance = gait.stance
         ended = gait.advance(self._dt, loads[gait.swing])
         if ended:

@@ -80,7 +80,7 @@ class TorqueLaw:
         flat = {} if foot is None else {int(self._ankles[gait.stance]): foot}
         tracking.set_frames(plan.heading, flat)
         vectors = tracking.torques()
-        if plan.liquid.level > 0.0 and self._config.drag_compensation:
+        if self._config.drag_compensation and plan.drags:
             vectors[: len(self.groups)] += self._carry_drag(plan)
         shares = stance_share(loads[gait.stance], loads[gait.swing])
         hips = (int(self._hips[gait.stance]), int(self._hips[gait.swing]))
@@ -114,7 +114,8 @@ class TorqueLaw:
         """What holds the swing leg back in the liquid; the stance hip balances it too."""
         if self._drag is None:
             self._drag = DragCompensation(self._robot, self.groups)
-        return self._drag.torques(plan.gait.swing, plan.liquid, plan.heading[:, 1])
+        across, speed = plan.heading[:, 1], plan.command[1]
+        return self._drag.torques(plan.gait.swing, plan.liquid, across, speed)
 
     def _balance_root(
         self,

@@ -114,6 +114,16 @@ def test_without_drag_compensation_the_leg_is_too_late_in_a_thick_liquid():
     assert walked.ending == "fell"
 
 
+@pytest.mark.parametrize("off", [False, True])
+def test_without_drag_compensation_it_cannot_walk_aside_in_water(off):
+    change = ("walking.drag_compensation=false",) if off else ()
+    aside = ((0.0, 0.2),)
+    walked, _ = wade(*change, speed=0.0, seconds=6.0, water=0.5, lateral=aside)
+    assert (walked.stopped_s is not None) is off
+    if not off:
+        assert mean_velocity(walked.trace)[1] == pytest.approx(0.2, abs=0.03)
+
+
 def test_without_the_style_of_thick_liquids_it_falls_thigh_deep():
     """0.3 m/s, 0.75 m, viscosity 5: with it 20 s, without it a fall at 3.7 s."""
     styles = [style for style in load_robot("human").walking["styles"] if "resistance" not in style]

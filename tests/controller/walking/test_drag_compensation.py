@@ -17,6 +17,8 @@ LEVEL = 0.75
 WATER = Liquid(LEVEL)
 THICK = Liquid(LEVEL, 1000.0, 4.0)
 FORWARD, LEFT, UP = np.eye(3)
+ASIDE = 0.2
+"""Coronal speed at which all drag across is carried [m/s]."""
 
 
 def joint_drag(robot, groups, swing):
@@ -47,7 +49,9 @@ def test_it_carries_the_drag_that_the_simulated_liquid_puts_on_the_swing_leg(hum
     for seed in range(20):
         robot.set_state(random_state(human, seed, speed=0.6))
         drag, leg = joint_drag(robot, groups, swing)
-        torques = sum(compensation.torques(swing, WATER, axis) for axis in (FORWARD, LEFT, UP))
+        torques = sum(
+            compensation.torques(swing, WATER, axis, ASIDE) for axis in (FORWARD, LEFT, UP)
+        )
         joints = groups.project(torques, robot.joint_axes)
         assert not joints[~leg].any()
         wanted.append(-drag[leg])
@@ -60,20 +64,22 @@ def test_it_carries_the_drag_that_the_simulated_liquid_puts_on_the_swing_leg(hum
 def test_a_leg_at_rest_and_a_dry_leg_need_nothing(human, placed):
     groups, robot = placed.groups, placed.robot
     compensation = DragCompensation(robot, groups)
-    assert not compensation.torques(0, THICK, LEFT).any()
+    assert not compensation.torques(0, THICK, LEFT, ASIDE).any()
     robot.set_state(random_state(human, seed=3))
-    assert compensation.torques(0, THICK, LEFT).any()
-    assert not compensation.torques(0, Liquid(-1.0, 1000.0, 4.0), LEFT).any()
+    assert compensation.torques(0, THICK, LEFT, ASIDE).any()
+    assert not compensation.torques(0, Liquid(-1.0, 1000.0, 4.0), LEFT, ASIDE).any()
 
 
 def test_ahead_it_carries_what_exceeds_water_and_sideways_everything(human, placed):
     robot = placed.robot
     compensation = DragCompensation(robot, placed.groups)
     robot.set_state(random_state(human, seed=3))
-    of_water = {tuple(axis): compensation.torques(0, WATER, axis) for axis in (FORWARD, LEFT, UP)}
+    of_water = {
+        tuple(axis): compensation.torques(0, WATER, axis, ASIDE) for axis in (FORWARD, LEFT, UP)
+    }
     excess = 3.0 * sum(of_water.values())
     np.testing.assert_allclose(
-        compensation.torques(0, THICK, LEFT), excess + of_water[tuple(LEFT)], atol=1e-9
+        compensation.torques(0, THICK, LEFT, ASIDE), excess + of_water[tuple(LEFT)], atol=1e-9
     )
 
 
@@ -88,3 +94,12 @@ def test_strips_show_what_the_solid_shows(human):
     round_end = np.pi * radius**2
     outline = 4.0 * radius * half + round_end
     np.testing.assert_allclose(thigh.sum(axis=0), (outline, outline, round_end))
+
+
+def test_a_walk_that_goes_straight_keeps_the_drag_its_poses_are_made_for(human, placed):
+    robot = placed.robot
+    compensation = DragCompensation(robot, placed.groups)
+    robot.set_state(random_state(human, seed=3))
+    assert not compensation.torques(0, WATER, LEFT, 0.0).any()
+    half = compensation.torques(0, WATER, LEFT, 0.05)
+    assert 0.0 < np.abs(half).max() < np.abs(compensation.torques(0, WATER, LEFT, ASIDE)).max()

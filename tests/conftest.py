@@ -1,0 +1,36 @@
+"""Which tests share a process when several run them (`pytest -n 2 --dist loadgroup`)."""
+
+from pathlib import Path
+
+import pytest
+
+HERE = Path(__file__).parent
+REAL_TIME = (
+    "contract",
+    "drivers",
+    "hil/bringup",
+    "hil/steering",
+    "hil/test_clock.py",
+    "hil/test_recorder.py",
+    "hil/test_stops.py",
+    "hil/test_timing.py",
+    "hil/view",
+    "safety",
+    "sim_backends/virtual",
+)
+"""What waits for a wall clock, often beside a process of its own: one after the other, or they
+would take the cores from each other."""
+TOGETHER = ("docs",)
+"""Folders whose tests share what takes long to make."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """A group for every test: its file, unless the file belongs to a larger one."""
+    for item in items:
+        item.add_marker(pytest.mark.xdist_group(_group(item.path.relative_to(HERE).as_posix())))
+
+
+def _group(file: str) -> str:
+    if file.startswith(REAL_TIME):
+        return "real time"
+    return next((folder for folder in TOGETHER if file.startswith(folder)), file)
