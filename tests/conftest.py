@@ -1,5 +1,6 @@
-"""Which tests share a process when several run them (`pytest -n 2 --dist loadgroup`)."""
+"""What all tests share: the width of the page, and who runs beside whom (`pytest -n 2`)."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -22,6 +23,11 @@ REAL_TIME = (
 would take the cores from each other."""
 TOGETHER = ("docs",)
 """Folders whose tests share what takes long to make."""
+
+
+def pytest_configure() -> None:
+    """Tables are as wide as a page, whatever terminal the tests run in."""
+    os.environ.pop("COLUMNS", None)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
