@@ -16,7 +16,7 @@ from controller.walking.torque_walker import TorqueWalker
 from drivers.dynamixel.servo_models import find_servo_model
 from hil.description import RobotDescription
 from hil.errors import InputError
-from hil.interface import Floats
+from hil.interface import GRAVITY, Floats
 from hil.jump_order import JumpOrder
 from hil.jump_report import JumpReview
 from hil.request import RunRequest
@@ -88,6 +88,8 @@ def jump_controller(order: JumpOrder, description: RobotDescription, rate_hz: in
     """The controller of a jump that the actuators can do; anything else raises InputError."""
     if order.run_up is not None and description.actuation != "torque":
         raise InputError("--run-up: a robot with servos hops from a stand")
+    if order.run_up is not None and order.gravity != GRAVITY:
+        raise InputError(f"--run-up: the walk is made for a gravity of {GRAVITY} m/s²")
     target = jump_target(order)
     description = _at_supply(description)
     curves = require_feasible(description, target)

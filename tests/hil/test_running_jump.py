@@ -57,6 +57,7 @@ def test_it_does_not_stop_before_it_jumps(folder):
     [
         (("--run-up", 0.5, "--target", 0.3, 0, 0.15), "level ground"),
         (("minibiped", "--run-up", 0.1, "--target", 0, 0, 0), "from a stand"),
+        (("--run-up", 0.5, "--gravity", 1.62), "gravity"),
         (("--run-up", 0), "--run-up"),
     ],
 )
