@@ -21,6 +21,8 @@ REAL_TIME = (
 )
 """What waits for a wall clock, often beside a process of its own: one after the other, or they
 would take the cores from each other."""
+BROWSER = "hil/view/test_chromium.py"
+"""Draws in software on every core there is. Groups of one test come last, when there is room."""
 TOGETHER = ("docs",)
 """Folders whose tests share what takes long to make."""
 
@@ -37,6 +39,6 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def _group(file: str) -> str:
-    if file.startswith(REAL_TIME):
+    if file.startswith(REAL_TIME) and file != BROWSER:
         return "real time"
     return next((folder for folder in TOGETHER if file.startswith(folder)), file)
