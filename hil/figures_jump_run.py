@@ -16,7 +16,7 @@ from hil.description import RobotDescription
 from hil.figure_style import BODY, LEFT, LIMIT, RIGHT, STYLE
 from hil.figures_jump import draw_com_path, draw_force_arrows, draw_jump_strip, draw_support
 from hil.interface import GRAVITY, SIDES, Floats
-from hil.jump_report import TOUCHING, JumpReview, Plan, flight_of
+from hil.jump_report import JumpReview, Plan, airborne, flight_of, foot_loads
 from hil.trace import Trace
 
 ARROWS = 7
@@ -83,15 +83,8 @@ def ground_force(trace: Trace, mass: float, gravity: float) -> Floats:
     """
     force: Floats = np.gradient(trace.com_velocity, trace.time_s, axis=0) * mass
     force[:, 2] += mass * gravity
-    load = _loads(trace).sum(axis=1)
-    force[load < TOUCHING * load.mean()] = 0.0
+    force[airborne(trace)] = 0.0
     return force
-
-
-def _loads(trace: Trace) -> Floats:
-    """What each foot carries [N], (T, 2)."""
-    loads: Floats = trace.foot_force.sum(axis=2) + trace.toe_force
-    return loads
 
 
 def _outcome(trace: Trace, flight: tuple[int, int] | None) -> str:
@@ -176,7 +169,7 @@ def _support(axes: Axes, trace: Trace, jump: JumpReview, span: tuple[int, int], 
 
 def _load(axes: Axes, trace: Trace, flight: tuple[int, int] | None, weight: float) -> None:
     """What each foot carries; grey while both are in the air."""
-    for load, side, colour in zip(_loads(trace).T, SIDES, (LEFT, RIGHT), strict=True):
+    for load, side, colour in zip(foot_loads(trace).T, SIDES, (LEFT, RIGHT), strict=True):
         axes.plot(trace.time_s, load, color=colour, linewidth=1.0, label=side)
     axes.axhline(weight, color=LIMIT, linestyle=":", linewidth=1.0)
     axes.text(trace.time_s[-1], weight, "weight ", fontsize=8, color=LIMIT, va="bottom", ha="right")

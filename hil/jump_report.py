@@ -6,7 +6,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from hil.interface import GRAVITY, Floats
+from hil.interface import GRAVITY, Bools, Floats
 from hil.trace import Trace
 
 STILL = 0.1
@@ -85,31 +85,25 @@ class JumpReview:
 
     def figures(self, trace: Trace, fell: bool) -> dict[str, Any]:
         """The report keys."""
+        return jump_figures(self.of(trace), self.plan(), self.soles, self.torque_ratio(), fell)
 
-        def centre(trace: Trace, tick: int) -> Floats:
-            middle: Floats = self.soles(trace, tick).mean(axis=(0, 1))
-            return middle
 
-        jump = self.of(trace)
-        figures = jump_figures(jump, self.plan(), centre, self.torque_ratio(), fell)
-        figures["foot_clearance_m"] = self._clearance(jump)
-        return figures
+def foot_loads(trace: Trace) -> Floats:
+    """What each foot carries [N], (T, 2)."""
+    loads: Floats = trace.foot_force.sum(axis=2) + trace.toe_force
+    return loads
 
-    def _clearance(self, jump: Trace) -> float:
-        """How high the lowest corner of both feet comes in the air [m]; 0 without a flight."""
-        flight = flight_of(jump)
-        if flight is None:
-            return 0.0
-        begin, end = flight
-        lowest = [self.soles(jump, k)[..., 2].min() for k in range(max(begin - 1, 0), end)]
-        return float(max(lowest) - lowest[0])
+
+def airborne(trace: Trace) -> Bools:
+    """Ticks in which no foot bears anything, (T,)."""
+    load = foot_loads(trace).sum(axis=1)
+    return np.asarray(load < TOUCHING * load.mean())
 
 
 def flight_of(trace: Trace) -> tuple[int, int] | None:
     """First tick in the air and first one after it, of the longest flight; None without one."""
-    load = trace.foot_force.sum(axis=(1, 2)) + trace.toe_force.sum(axis=1)
-    airborne = np.concatenate(([False], load < TOUCHING * load.mean(), [False]))
-    edges = np.flatnonzero(np.diff(airborne.astype(np.int8)))
+    in_the_air = np.concatenate(([False], airborne(trace), [False]))
+    edges = np.flatnonzero(np.diff(in_the_air.astype(np.int8)))
     begins, ends = edges[::2], edges[1::2]
     if not begins.size:
         return None
@@ -120,23 +114,28 @@ def flight_of(trace: Trace) -> tuple[int, int] | None:
 def jump_figures(
     trace: Trace,
     plan: Plan | None,
-    feet_centre: Callable[[Trace, int], Floats],
+    soles: Callable[[Trace, int], Floats],
     torque_ratio: float,
     fell: bool,
 ) -> dict[str, Any]:
     """Landing error at the end of the trace, horizontal; apex, take-off and airtime of the flight.
 
-    Errors are measured minus planned; the apex signed, the others as a distance. A jump that never
-    left the ground has an airtime of 0, and no errors.
+    Errors are measured minus planned; the apex signed, the others as a distance. The clearance is
+    how high the lowest corner of both feet comes. A jump that never left the ground has an airtime
+    and a clearance of 0, and no errors. `soles` gives their corners at a tick [m], (2, 4, 3).
     """
     figures: dict[str, Any] = dict.fromkeys(KEYS)
     figures["peak_joint_torque_ratio"] = torque_ratio
-    figures["landed_standing"], figures["airtime_s"] = False, 0.0
+    figures["landed_standing"] = False
+    figures["airtime_s"] = figures["foot_clearance_m"] = 0.0
     flight = None if plan is None else flight_of(trace)
     if plan is None or flight is None:
         return figures
     begin, end = flight
-    moved = feet_centre(trace, -1) - feet_centre(trace, max(begin - 1, 0))
+    in_the_air = [soles(trace, tick) for tick in range(max(begin - 1, 0), end)]
+    lowest = [float(corners[..., 2].min()) for corners in in_the_air]
+    figures["foot_clearance_m"] = max(lowest) - lowest[0]
+    moved = soles(trace, -1).mean(axis=(0, 1)) - in_the_air[0].mean(axis=(0, 1))
     wanted = plan.landing_feet - plan.feet
     figures["landing_error_m"] = float(np.hypot(*(moved - wanted)[:2]))
     figures["apex_error_m"] = float(trace.com[begin:end, 2].max() - plan.path.apex[2])

@@ -6,7 +6,14 @@ from controller.jumping.body_tasks import BodyTasks
 from controller.jumping.crouch import Crouch
 from controller.jumping.flight import Flight
 from controller.jumping.jump_plan import Heights, JumpPlan, plan_jump
-from controller.jumping.jump_settings import JumpSettings
+from controller.jumping.jump_settings import (
+    LEAN,
+    REST_BEND,
+    STANDING_BEND,
+    TAKE_OFF_BEND,
+    TOUCH_DOWN_BEND,
+    WINDUP_TIME,
+)
 from controller.jumping.landing import Stand
 from controller.jumping.path import JumpTarget
 from controller.jumping.posture import standing
@@ -44,14 +51,13 @@ class JumpController:
         """`target` in axes of the robot's heading at the start."""
         self._target = target
         self.body = body = WholeBody(description, target.gravity)
-        self._settings = settings = JumpSettings()
-        self.heights = jump_heights(body, description, settings)
+        self.heights = jump_heights(body, description)
         posture = np.array(description.start_position)
         self._tasks = BodyTasks(description, body, posture)
         standing(body.robot, posture)
         self._stance = np.array(body.robot.ankles) - body.robot.corner_positions.mean(axis=(0, 1))
         """Ankles from the soles' centre in the start pose [m], (2, 3)."""
-        self._tasks.upright, self._tasks.lean = self.heights.take_off, settings.lean
+        self._tasks.upright, self._tasks.lean = self.heights.take_off, LEAN
         self._frame = np.eye(3)
         """Heading of the jump to world, (3, 3)."""
         self._kit = Kit(self._tasks, 1.0 / rate_hz, target.gravity, target.push_depth)
@@ -106,7 +112,7 @@ class JumpController:
         x, y, z = (frame @ np.array(target.displacement)).tolist()
         turned = JumpTarget((x, y, z), target.airtime, target.push_depth, target.gravity)
         ahead = forward * PRESSURE * robot.leg_length
-        time = self._settings.windup_time / self._tasks.pace
+        time = WINDUP_TIME / self._tasks.pace
 
         def plan(speed: float) -> JumpPlan:
             return plan_jump(turned, robot.mass, self.heights, feet, speed * forward, ahead)
@@ -147,7 +153,7 @@ def carried_share(still: float, moving: float, speed: float, time: float) -> flo
     return min(max((1.5 * still / time - 0.5 * speed) / slope, 0.0), 1.0)
 
 
-def jump_heights(body: WholeBody, description: RobotDescription, settings: JumpSettings) -> Heights:
+def jump_heights(body: WholeBody, description: RobotDescription) -> Heights:
     """Of the centre of mass over the soles, from the height on straight legs; leaves it there."""
     robot = body.robot
     joints = np.array(description.start_position)
@@ -158,10 +164,5 @@ def jump_heights(body: WholeBody, description: RobotDescription, settings: JumpS
             joints[index] = 0.0
     standing(robot, joints)
     straight = float(robot.com[2])
-    bends = (
-        settings.standing_bend,
-        settings.take_off_bend,
-        settings.touch_down_bend,
-        settings.rest_bend,
-    )
+    bends = (STANDING_BEND, TAKE_OFF_BEND, TOUCH_DOWN_BEND, REST_BEND)
     return Heights(*(straight - bend * robot.leg_length for bend in bends))

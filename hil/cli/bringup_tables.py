@@ -1,20 +1,11 @@
 """Tables of text with heads, for the bring-up commands."""
 
-import os
-import sys
 from collections.abc import Mapping, Sequence
 
-from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
-from hil.cli.table import PAGE_COLUMNS
-
-
-def page_console() -> Console:
-    """Standard output, not cut to 80 columns where nobody said how wide the page is."""
-    unknown = not sys.stdout.isatty() and "COLUMNS" not in os.environ
-    return Console(width=PAGE_COLUMNS if unknown else None)
+from hil.cli.table import page_console
 
 
 def print_text(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> None:

@@ -43,7 +43,7 @@ def _print(rows: list[tuple[str, str, str, str]]) -> None:
     from rich.markup import escape
     from rich.table import Table
 
-    from hil.cli.bringup_tables import page_console
+    from hil.cli.table import page_console
 
     table = Table(header_style="bold")
     for head in ("", "what", "found", "what to do"):

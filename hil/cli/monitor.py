@@ -58,7 +58,7 @@ def _show(readings: "Iterator[tuple[float, RobotReading]]", name: str) -> None:
     """On a terminal the table stays and changes; elsewhere only the last one is printed."""
     from rich.live import Live
 
-    from hil.cli.bringup_tables import page_console
+    from hil.cli.table import page_console
 
     console = page_console()
     if not console.is_terminal:

@@ -20,7 +20,7 @@ def print_rows(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]]) 
         table.add_column(head, justify="right" if head else "left")
     for row in rows:
         table.add_row(*row)
-    _console().print(table)
+    page_console().print(table)
 
 
 def print_report(report: dict[str, Any], rung: str = "") -> None:
@@ -35,10 +35,10 @@ def print_report(report: dict[str, Any], rung: str = "") -> None:
     print_rows(title, ("", f"motion from {report['motion_source']}", ""), rows)
     for fault in report["faults"]:
         line = f"{fault['time_s']:.2f} s: {fault['source']}: {fault['name']} ({fault['reaction']})"
-        _console().print(line, style="bold red", highlight=False)
+        page_console().print(line, style="bold red", highlight=False)
 
 
-def _console() -> Console:
-    """A console that does not cut tables to 80 columns where nobody said how wide the page is."""
+def page_console() -> Console:
+    """Standard output, not cut to 80 columns where nobody said how wide the page is."""
     unknown = not sys.stdout.isatty() and "COLUMNS" not in os.environ
     return Console(width=PAGE_COLUMNS if unknown else None)

@@ -6,7 +6,7 @@ from controller.jumping.feasibility import require_feasible
 from controller.jumping.hop_rehearsal import HopCurves
 from controller.jumping.hop_settings import HopSettings
 from controller.jumping.jump_controller import JumpController
-from controller.jumping.jump_settings import JumpSettings
+from controller.jumping.jump_settings import PUSH_DEPTH
 from controller.jumping.path import JumpTarget
 from controller.jumping.posture import Posture
 from controller.jumping.running_jump import RunningJump
@@ -140,4 +140,4 @@ def default_push_depth(robot: str, overrides: tuple[str, ...]) -> float:
     description = load_robot(robot, overrides)
     leg = RobotModel(description).leg_length
     torque = description.actuation == "torque"
-    return round((JumpSettings() if torque else HopSettings()).push_depth * leg, 3)
+    return round((PUSH_DEPTH if torque else HopSettings().push_depth) * leg, 3)

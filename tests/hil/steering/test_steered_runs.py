@@ -7,6 +7,7 @@ import subprocess
 import sys
 import threading
 import time
+from contextlib import contextmanager
 
 import pytest
 from hil_fakes import Collector, make_session
@@ -169,14 +170,23 @@ with StopListener(Path(sys.argv[1]), Steering(Helm())).listening(post):
 """
 
 
-def test_arrows_of_the_terminal_steer_and_q_and_space_keep_their_meaning(tmp_path):
+@contextmanager
+def listening(tmp_path, typed_before=b""):
+    """A terminal's master end, the process that listens to it, and the lines that it says."""
     master, slave = pty.openpty()
+    os.write(master, typed_before)
     with subprocess.Popen(
         [sys.executable, "-c", LISTENING, str(tmp_path)],
         stdin=slave, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
         start_new_session=True, text=True,
     ) as process:  # fmt: skip
-        lines = iter(process.stdout.readline, "")
+        yield master, process, iter(process.stdout.readline, "")
+    os.close(master)
+    os.close(slave)
+
+
+def test_arrows_of_the_terminal_steer_and_q_and_space_keep_their_meaning(tmp_path):
+    with listening(tmp_path) as (master, process, lines):
         assert next(lines) == "ready\n"
         os.write(master, b"\x1b[A\x1b[D,0\rq\x1b[ ")
         heard = [next(lines).strip() for _ in range(7)]
@@ -187,20 +197,11 @@ def test_arrows_of_the_terminal_steer_and_q_and_space_keep_their_meaning(tmp_pat
         "key q False", "key space True",
     ]  # fmt: skip
     assert "space: torque off now" in hint and "arrows: speed and turn" in hint
-    os.close(master)
-    os.close(slave)
 
 
 def test_what_was_typed_before_anybody_listened_stops_and_never_steers(tmp_path):
     """A second Enter after the consent must not begin a walk."""
-    master, slave = pty.openpty()
-    os.write(master, b"\n\x1b[A\nq\n")
-    with subprocess.Popen(
-        [sys.executable, "-c", LISTENING, str(tmp_path)],
-        stdin=slave, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-        start_new_session=True, text=True,
-    ) as process:  # fmt: skip
-        lines = iter(process.stdout.readline, "")
+    with listening(tmp_path, b"\n\x1b[A\nq\n") as (master, process, lines):
         heard = ""
         while "key q False" not in heard:
             heard += next(lines)
@@ -210,8 +211,6 @@ def test_what_was_typed_before_anybody_listened_stops_and_never_steers(tmp_path)
         process.kill()
         process.communicate()
     assert "start" not in heard and "faster" not in heard
-    os.close(master)
-    os.close(slave)
 
 
 def test_steering_by_keys_needs_a_terminal():
